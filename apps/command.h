@@ -1,0 +1,24 @@
+// One command of the program.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace scancal {
+
+struct Command {
+  const char* name;
+  const char* arguments;                                  // "DATASET"
+  const char* summary;                                    // one line
+  std::vector<const char*> flags;                         // its own, in the order of its help
+  int (*run)(const std::vector<std::string>& arguments);  // exit code
+};
+
+extern const Command kRefineCommand, kCompareCommand, kSimulateCommand, kTransformCommand;
+
+// Exit codes.
+inline constexpr int kTrusted = 0, kBadInput = 1, kUnreliable = 2;
+
+int Complain(const std::string& sentence);  // to standard error; returns kBadInput
+std::string CommandLine();                  // as typed, quoted where a shell needs it
+
+}  // namespace scancal

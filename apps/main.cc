@@ -1,0 +1,93 @@
+// scancal: calibration of 3D scanners from geometric targets.
+#include <gflags/gflags.h>
+#include <glog/logging.h>
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include "apps/command.h"
+
+DECLARE_bool(help);
+DECLARE_bool(version);
+
+namespace scancal {
+namespace {
+
+const Command* const kCommands[] = {&kRefineCommand, &kCompareCommand, &kSimulateCommand, &kTransformCommand};
+std::string command_line;
+
+void PrintOverview() {
+  std::printf("scancal %s: calibration of 3D scanners, with its uncertainty\n\nusage: scancal COMMAND [flags]\n\n",
+              SCANCAL_VERSION);
+  for (const Command* command : kCommands)
+    std::printf("  %-10s %-8s %s\n", command->name, command->arguments, command->summary);
+  std::printf("\nscancal COMMAND --help lists the flags of a command.\n");
+}
+
+void PrintHelp(const Command& command) {
+  std::printf("usage: scancal %s %s [flags]\n\n%s\n\n", command.name, command.arguments, command.summary);
+  for (const char* name : command.flags) {
+    const auto info = gflags::GetCommandLineFlagInfoOrDie(name);
+    const std::string preset = info.default_value.empty() ? "" : " (default " + info.default_value + ")";
+    const std::string shown = info.type == "bool" ? info.name : info.name + "=" + info.type;
+    std::printf("  --%-28s %s%s\n", shown.c_str(), info.description.c_str(), preset.c_str());
+  }
+}
+
+bool Has(const Command& command, const std::string& flag) {
+  return std::find(command.flags.begin(), command.flags.end(), flag) != command.flags.end();
+}
+
+// A flag that belongs to another command would be ignored: say so.
+int RefuseForeignFlags(const Command& command) {
+  for (const Command* other : kCommands)
+    for (const char* flag : other->flags)
+      if (!Has(command, flag) && !gflags::GetCommandLineFlagInfoOrDie(flag).is_default)
+        return Complain(std::string("--") + flag + " is no flag of " + command.name + "; see scancal " + command.name +
+                        " --help");
+  return kTrusted;
+}
+
+int Main(int argc, char** argv) {
+  for (int i = 0; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const bool plain = argument.find_first_of(" \t'\"\\$&|;<>()*?") == std::string::npos && !argument.empty();
+    command_line += (i ? " " : "") + (plain ? argument : "'" + argument + "'");
+  }
+  FLAGS_logtostderr = true;
+  FLAGS_minloglevel = google::GLOG_WARNING;
+  google::InitGoogleLogging(argv[0]);
+  gflags::ParseCommandLineNonHelpFlags(&argc, &argv, true);
+  if (FLAGS_version) {
+    std::printf("scancal %s\n", SCANCAL_VERSION);
+    return kTrusted;
+  }
+  if (argc < 2) {
+    PrintOverview();
+    return FLAGS_help ? kTrusted : kBadInput;
+  }
+  for (const Command* command : kCommands) {
+    if (std::strcmp(argv[1], command->name) != 0) continue;
+    if (FLAGS_help) {
+      PrintHelp(*command);
+      return kTrusted;
+    }
+    if (const int refused = RefuseForeignFlags(*command)) return refused;
+    return command->run({argv + 2, argv + argc});
+  }
+  PrintOverview();
+  return Complain(std::string("found command \"") + argv[1] + "\", expected one of those above");
+}
+
+}  // namespace
+
+int Complain(const std::string& sentence) {
+  std::fflush(stdout);
+  std::fprintf(stderr, "scancal: %s\n", sentence.c_str());
+  return kBadInput;
+}
+
+std::string CommandLine() { return command_line; }
+
+}  // namespace scancal
+
+int main(int argc, char** argv) { return scancal::Main(argc, argv); }

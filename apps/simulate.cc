@@ -1,0 +1,91 @@
+// scancal simulate
+#include "models/turntable/simulate.h"
+#include <gflags/gflags.h>
+#include <cstdio>
+#include <numbers>
+#include "apps/command.h"
+
+DECLARE_string(out);
+DEFINE_double(M, 123, "offset of the profiler from the axis, mm");
+DEFINE_double(N, 409, "offset of the profiler from the axis along depth, mm");
+DEFINE_double(tilt_x, 0, "tilt of the profiler about its X, deg");
+DEFINE_double(tilt_y, 0, "tilt of the profiler about its Y, deg");
+DEFINE_int32(placements, 3, "placements of the plate");
+DEFINE_int32(profiles, 200, "profiles per placement");
+DEFINE_int32(points, 200, "points per profile");
+DEFINE_double(sweep, 30, "sweep of the table, deg");
+DEFINE_double(line_length, 200, "length of the laser line, mm");
+DEFINE_double(noise, 0.05, "standard deviation along depth, mm");
+DEFINE_double(line_correlation, 1, "integrated correlation length of the noise along the line, points; 1 is white");
+DEFINE_double(encoder_jitter, 0, "standard deviation of the angle, one error a profile, deg");
+DEFINE_double(form, 0, "smooth deviation of the plate, mm rms");
+DEFINE_double(outliers, 0, "share of points that are spikes, 0 to 1");
+DEFINE_double(missing, 0, "share of points without a return, 0 to 1");
+DEFINE_double(search_width_M, 20, "width of the search interval of M, mm; it is not centred on the truth");
+DEFINE_double(search_width_N, 30, "width of the search interval of N, mm");
+DEFINE_uint64(seed, 1, "of all random numbers: the same seed gives the same files");
+DEFINE_string(format, "csv", "csv (angles to 1e-6 deg, lengths to 0.1 um) or npy (every digit)");
+
+namespace scancal {
+namespace {
+
+int Run(const std::vector<std::string>& arguments) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  if (!arguments.empty()) return Complain("simulate takes no argument; the folder is given by --out");
+  if (FLAGS_out.empty()) return Complain("--out: expected the folder to write");
+  if (FLAGS_format != "csv" && FLAGS_format != "npy")
+    return Complain("--format: found \"" + FLAGS_format + "\", expected csv or npy");
+  TurntableScene scene;
+  scene.pose = {FLAGS_M, FLAGS_N, FLAGS_tilt_x * kDegree, FLAGS_tilt_y * kDegree, 0, 0};
+  scene.placements = FLAGS_placements;
+  scene.profiles = FLAGS_profiles;
+  scene.points = FLAGS_points;
+  scene.sweep = FLAGS_sweep * kDegree;
+  scene.line_length = FLAGS_line_length;
+  scene.noise_y = FLAGS_noise;
+  scene.line_correlation = FLAGS_line_correlation;
+  scene.encoder_jitter = FLAGS_encoder_jitter * kDegree;
+  scene.form = FLAGS_form;
+  scene.outliers = FLAGS_outliers;
+  scene.missing = FLAGS_missing;
+  scene.seed = FLAGS_seed;
+  scene.search = SearchAround(scene.pose, FLAGS_search_width_M, FLAGS_search_width_N);
+  const auto format = FLAGS_format == "npy" ? ScanFileFormat::kNpy : ScanFileFormat::kCsv;
+  const Result<void> written = WriteSimulatedTurntable(scene, format, FLAGS_out);
+  if (!written.ok()) return Complain(written.error().message);
+  std::printf(
+      "wrote %s: %d placements x %d profiles x %d points, M = %g mm, N = %g mm, seed %llu; truth.json holds the "
+      "truth\n",
+      FLAGS_out.c_str(), scene.placements, scene.profiles, scene.points, FLAGS_M, FLAGS_N,
+      static_cast<unsigned long long>(scene.seed));
+  return kTrusted;
+}
+
+}  // namespace
+
+const Command kSimulateCommand = {"simulate",
+                                  "",
+                                  "write a turntable data set with known truth",
+                                  {"out",
+                                   "M",
+                                   "N",
+                                   "tilt_x",
+                                   "tilt_y",
+                                   "placements",
+                                   "profiles",
+                                   "points",
+                                   "sweep",
+                                   "line_length",
+                                   "noise",
+                                   "line_correlation",
+                                   "encoder_jitter",
+                                   "form",
+                                   "outliers",
+                                   "missing",
+                                   "search_width_M",
+                                   "search_width_N",
+                                   "seed",
+                                   "format"},
+                                  &Run};
+
+}  // namespace scancal

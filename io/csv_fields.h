@@ -1,0 +1,56 @@
+// The cells of a CSV line.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+#include "io/number.h"
+#include "io/result.h"
+
+namespace scancal {
+
+// These walk over a line that ends with '\n', from the start of a cell to the comma or the '\n' behind it. A cell in
+// quotes may hold commas.
+
+const char* SkipQuotedCell(const char* at);
+
+inline const char* SkipCell(const char* at) {
+  if (*at == '"') return SkipQuotedCell(at);
+  while (*at != ',' && *at != '\n') ++at;
+  return at;
+}
+
+const char* ReadCellCarefully(const char* at, ParsedNumber* number);
+
+// A cell that is a plain number is read in one go, any other one by ReadCellCarefully. `end`: of the block of lines.
+inline const char* ReadCell(const char* at, const char* end, ColumnParser& parser, ParsedNumber* number) {
+  const char* start = at;
+  while (*start == ' ') ++start;
+  if (const char* number_end = parser.Parse(start, end, &number->value)) {
+    if (*number_end == '\r') ++number_end;
+    if (*number_end == ',' || *number_end == '\n') {
+      number->kind = NumberKind::kNumber;
+      return number_end;
+    }
+  }
+  return ReadCellCarefully(at, number);
+}
+
+// For the lines that are no hurry: the headers and the wrong ones.
+struct CsvField {
+  std::string text;   // without blanks and quotes around it
+  size_t column = 1;  // where it starts in the line, 1-based, in characters
+};
+std::vector<CsvField> SplitCells(std::string_view line);
+
+// left.csv:1042:8: y: found "12.3.4", expected a number; `place` is left.csv:1042, `cell` starts in `line`, which is
+// followed by '\n'.
+Error WrongCsvCell(const std::string& place, std::string_view line, const char* cell, const std::string& name,
+                   NumberKind kind);
+
+// Blank, or a comment.
+bool IsWithoutCells(std::string_view line);
+
+// "; the cells are separated by semicolons, expected commas" if there is reason to think so, else empty.
+std::string WrongSeparator(std::string_view line);
+
+}  // namespace scancal

@@ -1,0 +1,127 @@
+#include "io/dataset.h"
+#include <utility>
+#include "io/message.h"
+
+namespace scancal {
+namespace {
+
+constexpr int kVersion = 1;
+const std::vector<std::string>& Roles() {
+  static const std::vector<std::string> roles = {"estimate", "consider", "hold"};
+  return roles;
+}
+
+void CheckVersion(YamlMap& yaml) {
+  const double version = yaml.Number("scancal");
+  if (version == kVersion) return;
+  const std::string expected = "expected " + std::to_string(kVersion) + ", the version of the format";
+  yaml.Fail("scancal", version > kVersion ? expected + "; the data set is made for a newer scancal" : expected);
+}
+
+Units ReadUnits(YamlMap yaml) {
+  Units units;
+  units.length = yaml.Text("length");
+  units.angle = yaml.Text("angle");
+  const auto length = UnitSize(units.length, Dimension::kLength);
+  const auto angle = UnitSize(units.angle, Dimension::kAngle);
+  if (!length) yaml.Fail("length", "expected mm, m or um");
+  if (!angle) yaml.Fail("angle", "expected deg or rad");
+  units.length_in_mm = length.value_or(1);
+  units.angle_in_rad = angle.value_or(1);
+  return units;
+}
+
+// M: estimate
+ParameterSetting ReadRole(YamlMap& parameters, const std::string& name) {
+  ParameterSetting setting{.name = name, .role = parameters.Text(name), .value = {}};
+  if (setting.role == "consider") {
+    parameters.Fail(name, "expected its standard uncertainty as well: {consider: 0, u: ...}");
+  } else if (setting.role != "estimate" && setting.role != "hold") {
+    const std::string nearest = Nearest(setting.role, Roles());
+    parameters.Fail(name,
+                    "expected estimate, hold, {hold: value}, {consider: value, u: ...} or {estimate: value, u: ...}" +
+                        (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+  }
+  return setting;
+}
+
+// The one role among the keys of {estimate: 123, u: 0.5}; empty, with a complaint, if there is none or another.
+std::string FindRole(YamlMap& yaml) {
+  std::string role;
+  for (const std::string& candidate : Roles()) {
+    if (!yaml.Has(candidate)) continue;
+    if (!role.empty()) {
+      yaml.Fail("", "found the roles " + Listed({role, candidate}) + ", expected one of them");
+      return "";
+    }
+    role = candidate;
+  }
+  if (!role.empty()) return role;
+  for (const std::string& key : yaml.Keys()) {
+    if (key != "u") yaml.Fail(key, "unknown role '" + key + "'" + Suggestion(key, Roles()));
+  }
+  yaml.Fail("", "found no role, expected one of: " + Listed(Roles()));
+  return "";
+}
+
+// M: {estimate: 123, u: 0.5}
+ParameterSetting ReadRoleWithValue(YamlMap yaml, const std::string& name) {
+  ParameterSetting setting{.name = name, .role = FindRole(yaml), .value = {}};
+  if (setting.role.empty()) return setting;
+  setting.value = yaml.Number(setting.role);
+  if (setting.role == "hold") {
+    if (yaml.Has("u")) yaml.Fail("u", "a parameter on hold has no uncertainty; did you mean {consider: ..., u: ...}?");
+    return setting;
+  }
+  const bool consider = setting.role == "consider";
+  setting.u = consider ? yaml.Number("u") : yaml.Number("u", 0);
+  if (setting.u < 0) yaml.Fail("u", "expected a standard uncertainty, not negative");
+  if (setting.u == 0 && consider) yaml.Fail("u", "expected more than 0; without uncertainty it is {hold: ...}");
+  return setting;
+}
+
+std::vector<ParameterSetting> ReadParameters(YamlMap yaml) {
+  std::vector<ParameterSetting> settings;
+  for (const std::string& name : yaml.Keys()) {
+    settings.push_back(yaml.IsMap(name) ? ReadRoleWithValue(yaml.Map(name), name) : ReadRole(yaml, name));
+  }
+  return settings;
+}
+
+std::vector<InfluenceSetting> ReadInfluences(YamlMap yaml) {
+  constexpr auto kExpected = "expected a standard uncertainty of 0 or more, or estimate";
+  std::vector<InfluenceSetting> settings;
+  for (const std::string& name : yaml.Keys()) {
+    InfluenceSetting setting{.name = name};
+    if (yaml.IsNumber(name)) {
+      setting.u = yaml.Number(name);
+      if (setting.u < 0) yaml.Fail(name, kExpected);
+    } else {
+      setting.estimate = !yaml.IsMap(name) && yaml.Text(name) == "estimate";
+      if (!setting.estimate) yaml.Fail(name, kExpected);
+    }
+    settings.push_back(std::move(setting));
+  }
+  return settings;
+}
+
+}  // namespace
+
+Result<Dataset> ReadDataset(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  Dataset dataset;
+  dataset.file = std::filesystem::is_directory(folder, ignored) ? folder / "dataset.yaml" : folder;
+  SCANCAL_ASSIGN_OR_RETURN(dataset.yaml, YamlMap::Open(dataset.file));
+  YamlMap& yaml = dataset.yaml;
+  CheckVersion(yaml);  // first: what follows may mean something else in another version
+  dataset.model = yaml.Text("model");
+  dataset.name = yaml.Text("name", "");
+  dataset.units = ReadUnits(yaml.Map("units"));
+  if (yaml.Has("parameters")) dataset.parameters = ReadParameters(yaml.Map("parameters"));
+  if (yaml.Has("influences")) dataset.influences = ReadInfluences(yaml.Map("influences"));
+  if (yaml.Has("certificate")) dataset.certificate = yaml.Json("certificate");
+  SCANCAL_RETURN_IF_ERROR(yaml.Check());
+  return dataset;
+}
+
+}  // namespace scancal

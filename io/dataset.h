@@ -1,0 +1,42 @@
+// dataset.yaml: the half that every model shares. The rest is taken by the model from `yaml`, which then says Finish().
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+#include "io/result.h"
+#include "io/units.h"
+#include "io/yaml.h"
+
+namespace scancal {
+
+// parameters: {tilt_x: estimate, tilt_y: {consider: 0, u: 0.0005}, M: {estimate: 123, u: 0.5}, N: {hold: 409}}
+struct ParameterSetting {
+  std::string name;
+  std::string role;             // estimate | consider | hold
+  std::optional<double> value;  // declared unit; absent: the model's nominal
+  double u = 0;  // declared unit; consider: standard uncertainty, required > 0; estimate: of the prior, 0 = none
+};
+
+// influences: {noise_y: 0.05, encoder_jitter: estimate}
+struct InfluenceSetting {
+  std::string name;
+  bool estimate = false;
+  double u = 0;  // declared unit, >= 0
+};
+
+struct Dataset {
+  std::filesystem::path file;  // .../dataset.yaml
+  std::string model, name;     // name: empty if not declared
+  Units units;
+  std::vector<ParameterSetting> parameters;
+  std::vector<InfluenceSetting> influences;
+  nlohmann::json certificate;  // null if absent
+  YamlMap yaml;                // what is left for the model
+};
+
+// folder: holds dataset.yaml, or that file itself. Checks the format version, units, roles, u >= 0; not yet unknown
+// keys.
+Result<Dataset> ReadDataset(const std::filesystem::path& folder);
+
+}  // namespace scancal

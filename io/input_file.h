@@ -1,0 +1,34 @@
+// An open file to read from, with complaints that name it.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include "io/result.h"
+
+namespace scancal {
+
+class InputFile {
+ public:
+  static Result<InputFile> Open(const std::filesystem::path& path);  // missing, a directory, not readable: errors
+  InputFile(InputFile&& other) noexcept;
+  InputFile& operator=(InputFile&& other) noexcept;
+  ~InputFile();
+
+  // Fills the buffer; fewer bytes only at the end of the file.
+  Result<size_t> Read(char* buffer, size_t size);
+  Result<void> Skip(int64_t bytes);                  // of a regular file
+  const std::string& name() const { return name_; }  // as the caller gave it
+  int64_t size() const { return size_; }             // bytes; 0 for a pipe
+  bool regular() const { return regular_; }
+
+ private:
+  InputFile(std::string name, int descriptor) : name_(std::move(name)), descriptor_(descriptor) {}
+  std::string name_;
+  int descriptor_ = -1;
+  int64_t size_ = 0;
+  bool regular_ = false;
+};
+
+Result<std::string> ReadText(const std::filesystem::path& path);  // the whole file; for small ones
+
+}  // namespace scancal

@@ -1,0 +1,69 @@
+#include "io/json_file.h"
+#include <cmath>
+#include <utility>
+#include "io/input_file.h"
+#include "io/message.h"
+#include "io/output_file.h"
+#include "io/utf8.h"
+
+namespace scancal {
+namespace {
+
+// What JSON cannot hold, with the path of its key: "parameters[0].u is nan"; empty if there is nothing of the kind.
+std::string FindUnwritable(const Json& json, const std::string& key) {
+  if (json.is_number_float() && !std::isfinite(json.get<double>())) {
+    const double value = json.get<double>();
+    return key + " is " + (std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
+  }
+  if (json.is_string() && FirstInvalidUtf8(json.get_ref<const std::string&>())) {
+    return key + " is not UTF-8 text: " + Quoted(json.get_ref<const std::string&>());
+  }
+  std::string found;
+  if (json.is_array()) {
+    for (size_t i = 0; i < json.size() && found.empty(); ++i) {
+      found = FindUnwritable(json[i], key + "[" + std::to_string(i) + "]");
+    }
+  }
+  if (json.is_object()) {
+    for (auto item = json.begin(); item != json.end() && found.empty(); ++item) {
+      found = FirstInvalidUtf8(item.key()) ? key + " has a key that is not UTF-8: " + Quoted(item.key())
+                                           : FindUnwritable(*item, key.empty() ? item.key() : key + "." + item.key());
+    }
+  }
+  return found;
+}
+
+// "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while ... - reason" -> "reason"
+std::string ReasonOf(const std::string& message) {
+  for (const std::string_view before : {" - ", ": ", "] "}) {
+    if (const size_t at = message.find(before); at != std::string::npos) return message.substr(at + before.size());
+  }
+  return message;
+}
+
+}  // namespace
+
+Result<Json> ReadJson(const std::filesystem::path& path) {
+  SCANCAL_ASSIGN_OR_RETURN(const std::string file, ReadText(path));
+  const std::string_view text = WithoutByteOrderMark(file);
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
+    return Error{path.string() + ": the file is empty, expected JSON"};
+  }
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    const TextPlace place = PlaceOf(text, std::min(text.size(), error.byte > 0 ? error.byte - 1 : 0));
+    return Error{path.string() + ":" + std::to_string(place.line) + ":" + std::to_string(place.column) +
+                 ": not JSON: " + ReasonOf(error.what())};
+  } catch (const Json::exception& error) {
+    return Error{path.string() + ": not JSON: " + ReasonOf(error.what())};
+  }
+}
+
+Result<void> WriteJson(const std::filesystem::path& path, const Json& json) {
+  const std::string unwritable = FindUnwritable(json, "");
+  if (!unwritable.empty()) return Error{path.string() + ": not written: " + unwritable + ", which JSON cannot hold"};
+  return WriteFile(path, json.dump(2) + "\n");
+}
+
+}  // namespace scancal

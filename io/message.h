@@ -1,0 +1,23 @@
+// The words that error messages are made of.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scancal {
+
+// What was found, for a message: in quotes, cut when long, control characters shown as "?".
+std::string Quoted(std::string_view text);
+
+std::string Listed(const std::vector<std::string>& words);  // a, b, c; the first thirty
+
+// The candidate with the fewest edits (insert, delete, replace a character), or empty if none is close enough to have
+// been meant.
+std::string Nearest(std::string_view word, const std::vector<std::string>& candidates);
+
+// ", did you mean 'search'?", or "; expected one of: a, b, c" if none is near; empty if nothing is known.
+std::string Suggestion(std::string_view word, const std::vector<std::string>& known);
+
+std::string SystemMessage(int error_number);  // No such file or directory
+
+}  // namespace scancal

@@ -1,0 +1,74 @@
+#include "models/parts/moments.h"
+#include <cmath>
+
+// No Eigen here: this file alone is compiled for several processors.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define SCANCAL_FOR_EACH_PROCESSOR __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define SCANCAL_FOR_EACH_PROCESSOR
+#endif
+
+namespace scancal {
+namespace {
+
+constexpr size_t kLanes = 8;
+
+struct Lanes {
+  double sum[kLanes] = {};
+  double Total() const { return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7])); }
+};
+
+}  // namespace
+
+SCANCAL_FOR_EACH_PROCESSOR LineFactor FactorLine(const double* y, const double* z, size_t n) {
+  if (n == 0) return {};
+  const double count = static_cast<double>(n), root = std::sqrt(count);
+  const size_t whole = n - n % kLanes;
+
+  Lanes sum_y, sum_z;
+  for (size_t i = 0; i < whole; i += kLanes)
+    for (size_t k = 0; k < kLanes; ++k) {
+      sum_y.sum[k] += y[i + k];
+      sum_z.sum[k] += z[i + k];
+    }
+  for (size_t i = whole; i < n; ++i) {
+    sum_y.sum[i - whole] += y[i];
+    sum_z.sum[i - whole] += z[i];
+  }
+  double mean_y = sum_y.Total() / count, mean_z = sum_z.Total() / count;
+
+  // About the means, whose own rounding shows in the sums of the differences.
+  Lanes left_y, left_z, zz, zy;
+  const auto centred = [&](size_t i, size_t k) __attribute__((always_inline)) {
+    const double dy = y[i] - mean_y, dz = z[i] - mean_z;
+    left_y.sum[k] += dy;
+    left_z.sum[k] += dz;
+    zz.sum[k] += dz * dz;
+    zy.sum[k] += dz * dy;
+  };
+  for (size_t i = 0; i < whole; i += kLanes)
+    for (size_t k = 0; k < kLanes; ++k) centred(i + k, k);
+  for (size_t i = whole; i < n; ++i) centred(i, i - whole);
+  const double shift_y = left_y.Total() / count, shift_z = left_z.Total() / count;
+  const double r11 = std::sqrt(std::fmax(0.0, zz.Total() - count * shift_z * shift_z));
+  const double slope = r11 > 0 ? (zy.Total() - count * shift_z * shift_y) / (r11 * r11) : 0;
+  mean_y += shift_y;
+  mean_z += shift_z;
+
+  // The residual of y, and what rounding left in it of 1 and z.
+  Lanes left, left_by_z, squares;
+  const auto residual = [&](size_t i, size_t k) __attribute__((always_inline)) {
+    const double dz = z[i] - mean_z, e = (y[i] - mean_y) - slope * dz;
+    left.sum[k] += e;
+    left_by_z.sum[k] += e * dz;
+    squares.sum[k] += e * e;
+  };
+  for (size_t i = 0; i < whole; i += kLanes)
+    for (size_t k = 0; k < kLanes; ++k) residual(i + k, k);
+  for (size_t i = whole; i < n; ++i) residual(i, i - whole);
+  const double of_one = left.Total() / root, of_z = r11 > 0 ? left_by_z.Total() / r11 : 0;
+  const double r22 = std::sqrt(std::fmax(0.0, squares.Total() - of_one * of_one - of_z * of_z));
+  return {root, root * mean_z, root * mean_y + of_one, r11, slope * r11 + of_z, r22};
+}
+
+}  // namespace scancal

@@ -1,0 +1,91 @@
+#include "models/turntable.h"
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <numbers>
+
+namespace scancal {
+
+Turntable::Turntable(Residuals residuals) : residuals_(residuals) {
+  using enum Scope;
+  const auto declare = [&](const char* name, Unit unit, Scope scope, Role role, bool in_nodes) {
+    quantities_.push_back({name, unit, scope, role, 0, 0, in_nodes, ""});
+  };
+  declare("M", Unit::kMm, kSystem, Role::kEstimate, true);
+  declare("N", Unit::kMm, kSystem, Role::kEstimate, true);
+  declare("tilt_x", Unit::kRad, kSystem, Role::kHold, true);
+  declare("tilt_y", Unit::kRad, kSystem, Role::kHold, true);
+  declare("scale_y", Unit::kOne, kSystem, Role::kHold, true);
+  declare("scale_z", Unit::kOne, kSystem, Role::kHold, true);
+  declare("normal_1", Unit::kRad, kTarget, Role::kEstimate, true);
+  declare("normal_2", Unit::kRad, kTarget, Role::kEstimate, true);
+  declare("distance", Unit::kMm, kTarget, Role::kEstimate, true);
+  declare("encoder_jitter", Unit::kRad, kView, Role::kHold, false);
+  declare("noise_y", Unit::kMm, kPoint, Role::kHold, false);
+}
+
+std::vector<Turntable::View> Turntable::Nodes(const Target& target) const {
+  if (residuals_ == Residuals::kDepth || target.views.empty()) return {};
+  double first = target.views.front().alpha, last = first, weight = 0, y = 0, z = 0, yy = 0, zz = 0;
+  for (const View& view : target.views) {
+    first = std::min(first, view.alpha);
+    last = std::max(last, view.alpha);
+    for (const PseudoPoint& p : view.points) {
+      const double w = p.weight * p.weight;
+      weight += w;
+      y += w * p.y;
+      z += w * p.z;
+      yy += w * p.y * p.y;
+      zz += w * p.z * p.z;
+    }
+  }
+  // Three angles on a full turn must not repeat, so 4/3 pi is as far apart as they go.
+  const double sweep = std::min(last - first, 4 * std::numbers::pi / 3);
+  constexpr double kNoSweep = 1e-6;
+  if (!(sweep > kNoSweep) || !(weight > 0)) return {};
+  y /= weight;
+  z /= weight;
+  const double spread_y = std::max(1.0, std::sqrt(std::max(0.0, yy / weight - y * y)));
+  const double spread_z = std::max(1.0, std::sqrt(std::max(0.0, zz / weight - z * z)));
+  const std::vector<PseudoPoint> points = {{1, y, z}, {1, y + spread_y, z}, {1, y, z + spread_z}};
+  return {{first, points, 0, false}, {first + sweep / 2, points, 0, false}, {first + sweep, points, 0, false}};
+}
+
+Eigen::MatrixXd Turntable::Interpolate(const std::vector<View>& nodes, const View& view) const {
+  Eigen::Matrix3d turn;
+  for (int k = 0; k < 3; ++k) turn.col(k) << 1, std::cos(nodes[k].alpha), std::sin(nodes[k].alpha);
+  const Eigen::Vector3d by_turn = turn.inverse() * Eigen::Vector3d(1, std::cos(view.alpha), std::sin(view.alpha));
+  const PseudoPoint &origin = nodes[0].points[0], &along_y = nodes[0].points[1], &along_z = nodes[0].points[2];
+  Eigen::MatrixXd result(Points(view), 9);
+  for (int i = 0; i < Points(view); ++i) {
+    const PseudoPoint& p = view.points[i];
+    const double in_y = (p.y - origin.y) / (along_y.y - origin.y), in_z = (p.z - origin.z) / (along_z.z - origin.z);
+    const Eigen::RowVector3d on_line(1 - in_y - in_z, in_y, in_z);
+    for (int k = 0; k < 3; ++k) result.block<1, 3>(i, 3 * k) = p.weight * by_turn[k] * on_line;
+  }
+  return result;
+}
+
+std::pair<Eigen::Vector3d, double> Turntable::Plane(const Target& plane, const Eigen::Vector3d& own) {
+  const Eigen::Vector3d turn = own[0] * plane.e1 + own[1] * plane.e2;
+  Eigen::Vector3d normal;
+  Rotate(turn.data(), plane.normal, normal.data());
+  return {normal, plane.distance + own[2]};
+}
+
+void Turntable::SetPlane(const Eigen::Vector3d& normal, double distance, Target* target) {
+  target->normal = normal.normalized();
+  target->distance = distance;
+  target->e1 = target->normal.unitOrthogonal();
+  target->e2 = target->normal.cross(target->e1);
+}
+
+Eigen::Vector3d TurntablePose::Point(double alpha, double y, double z) const {
+  const Eigen::Vector3d in_sensor(0, y * (1 + scale_y), z * (1 + scale_z));
+  const Eigen::Vector3d at_zero = Eigen::AngleAxisd(tilt_y, Eigen::Vector3d::UnitY()) *
+                                      (Eigen::AngleAxisd(tilt_x, Eigen::Vector3d::UnitX()) * in_sensor) +
+                                  Eigen::Vector3d(-M, N, 0);
+  return Eigen::AngleAxisd(std::numbers::pi - alpha, Eigen::Vector3d::UnitZ()) * at_zero;
+}
+
+}  // namespace scancal

@@ -1,0 +1,104 @@
+// A laser line profiler that turns about an axis and sees planes (Zhao et al. 2021).
+#pragma once
+#include <Eigen/Core>
+#include <cmath>
+#include <string>
+#include <vector>
+#include "models/parts/pseudo_points.h"
+#include "models/parts/rotation.h"
+#include "solver/problem.h"
+
+namespace scancal {
+
+// A point (0, y, z) of the profile at encoder angle alpha lies in the table frame at
+//
+//     P(alpha; y, z) = Rz(-alpha) Rz(pi) ( Ry(tilt_y) Rx(tilt_x) (0, y, z)' + (-M, N, 0)' ),
+//
+// which for zero tilts is eq. (7), simplified: x = M cos a - (N + y) sin a, y = -M sin a - (N + y) cos a, z = z. A
+// placement of the plate is the plane n . P = d. Two residuals, both affine in (y, z) within a profile, hence exact on
+// its pseudo-points:
+//
+//     point to plane   r = n . P - d                     the published kind; biased, because the noise is not along n
+//     depth            e = r / (n . dP/dy)               measured depth minus the depth that the model predicts
+//
+// For a lidar the noise lies along the range: e = r / (n . dP/drange), with dP/drange taken at the profile's own line
+// (see Profile::along_range). Lengths mm, angles rad.
+class Turntable {
+ public:
+  enum Index { kM, kN, kTiltX, kTiltY, kScaleY, kScaleZ, kNormal1, kNormal2, kDistance, kEncoderJitter, kNoiseY };
+  enum class Residuals { kPlane, kDepth };
+  static constexpr int kRowsPerPoint = 1;
+
+  struct View {  // a profile
+    double alpha = 0;
+    std::vector<PseudoPoint> points;
+    double count = 0;  // raw points behind them
+    // A lidar's rows are multiplied by the range at the profile's own line, so that n . dP/drange = -(n . O - d) /
+    // range, O the origin of the sensor, divides all of them alike.
+    bool along_range = false;
+  };
+  struct Target {  // a placement
+    std::string name;
+    std::vector<View> views;
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // where normal_1, normal_2 (a rotation vector in e1, e2) start
+    double distance = 0;                                // and where distance starts
+    Eigen::Vector3d e1 = Eigen::Vector3d::UnitX(), e2 = Eigen::Vector3d::UnitY();
+  };
+
+  explicit Turntable(Residuals residuals);
+  const Quantities& quantities() const { return quantities_; }
+  Quantity& quantity(int k) { return quantities_[k]; }
+  Residuals residuals() const { return residuals_; }
+  int Points(const View& view) const { return static_cast<int>(view.points.size()); }
+  double Count(const View& view) const { return view.count; }
+
+  template <class T>
+  void Residual(const Target& plane, const View& profile, const Seen<T>& q, T* r) const;
+
+  // The node storey: point-to-plane residuals are linear in the nine features {1, y, z} x {1, cos a, sin a}, so nine
+  // points in general position, three on each of three profiles, give all others. None for the depth residual, nor
+  // without a sweep.
+  std::vector<View> Nodes(const Target& target) const;
+  Eigen::MatrixXd Interpolate(const std::vector<View>& nodes, const View& view) const;
+
+  // The unit normal and distance of a placement at its estimated normal_1, normal_2, distance.
+  static std::pair<Eigen::Vector3d, double> Plane(const Target& plane, const Eigen::Vector3d& own);
+  static void SetPlane(const Eigen::Vector3d& normal, double distance, Target* target);  // n, d and the tangents
+
+ private:
+  Residuals residuals_;
+  Quantities quantities_;
+};
+
+// P(alpha; y, z) in the table frame.
+struct TurntablePose {
+  double M = 0, N = 0, tilt_x = 0, tilt_y = 0, scale_y = 0, scale_z = 0;
+  Eigen::Vector3d Point(double alpha, double y, double z) const;
+};
+
+template <class T>
+void Turntable::Residual(const Target& plane, const View& profile, const Seen<T>& q, T* r) const {
+  using std::cos, std::sin;
+  const T turn[3] = {q[kNormal1] * plane.e1[0] + q[kNormal2] * plane.e2[0],
+                     q[kNormal1] * plane.e1[1] + q[kNormal2] * plane.e2[1],
+                     q[kNormal1] * plane.e1[2] + q[kNormal2] * plane.e2[2]};
+  T n[3];
+  Rotate(turn, plane.normal, n);
+  const T a = profile.alpha - q[kEncoderJitter];
+  const T c = cos(a), s = sin(a);
+  // m: n as seen by the untilted profiler, (Rz(-a) Rz(pi))' n; then each coordinate's share of n . P.
+  const T m[3] = {-(c * n[0] - s * n[1]), -(s * n[0] + c * n[1]), n[2]};
+  const T cx = cos(q[kTiltX]), sx = sin(q[kTiltX]), cy = cos(q[kTiltY]), sy = sin(q[kTiltY]);
+  const T by = m[0] * (sy * sx) + m[1] * cx + m[2] * (cy * sx);
+  const T bz = m[0] * (sy * cx) - m[1] * sx + m[2] * (cy * cx);
+  const T b0 = m[1] * q[kN] - m[0] * q[kM] - (plane.distance + q[kDistance]);
+  const T along_noise = profile.along_range ? -b0 : by;  // n . dP/dnoise of a row of weight one
+  const T scale = residuals_ == Residuals::kDepth ? 1.0 / along_noise : T(1.0);
+  for (int i = 0; i < Points(profile); ++i) {
+    const PseudoPoint& p = profile.points[i];
+    const T distance = b0 + by * (p.y * (1.0 + q[kScaleY])) + bz * (p.z * (1.0 + q[kScaleZ]));
+    r[i] = scale * (p.weight * distance - along_noise * q(i, kNoiseY));
+  }
+}
+
+}  // namespace scancal

@@ -1,0 +1,166 @@
+// The published search and the joint refinements on the same data, and the published figure of S.
+#include <fmt/format.h>
+#include <chrono>
+#include <cmath>
+#include "io/output_file.h"
+#include "io/progress.h"
+#include "models/turntable/turntable_scanner.h"
+#include "solver/uncertainty/covariance.h"
+
+namespace scancal {
+namespace {
+
+constexpr double kSteps[] = {1, 0.1, 0.01};  // mm: the published one, and what finer ones bring
+constexpr int kThreads = 2;
+
+class Stopwatch {
+ public:
+  double Seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::vector<double> Values(const TurntablePose& pose) { return {pose.M, pose.N, pose.tilt_x, pose.tilt_y}; }
+
+// Planes refitted at the pose: S as the search sees it, and the rms over all points.
+struct Flatness {
+  double S = 0, rms = 0;
+};
+Flatness FlatnessAt(const TurntableStart& start, const TurntablePose& pose, PlaneFit kind) {
+  double sum = 0, squares = 0, points = 0;
+  for (const Placement& placement : start.placements) {
+    const PlaneStorey storey(Views(placement.profiles, Turntable::Residuals::kPlane), pose);
+    sum += storey.Rmse(pose.M, pose.N, kind);
+    squares += std::pow(storey.Rmse(pose.M, pose.N, PlaneFit::kOrthogonal), 2) * placement.Points();
+    points += placement.Points();
+  }
+  return {sum / static_cast<double>(start.placements.size()), std::sqrt(squares / points)};
+}
+
+// Sum of squares of placement t seen with a pose found without it.
+double HeldOutSquares(const TurntableStart& start, size_t t, const TurntablePose& pose) {
+  const PlaneStorey storey(Views(start.placements[t].profiles, Turntable::Residuals::kPlane), pose);
+  return std::pow(storey.Rmse(pose.M, pose.N, PlaneFit::kOrthogonal), 2) * start.placements[t].Points();
+}
+
+double AllPoints(const TurntableStart& start) {
+  double points = 0;
+  for (const Placement& placement : start.placements) points += placement.Points();
+  return points;
+}
+
+TurntableStart Without(const TurntableStart& start, size_t t) {
+  TurntableStart rest = start;
+  rest.placements.erase(rest.placements.begin() + static_cast<std::ptrdiff_t>(t));
+  rest.storeys.erase(rest.storeys.begin() + static_cast<std::ptrdiff_t>(t));
+  return rest;
+}
+
+ComparisonRow GridRow(const TurntableStart& start, GridBox box, double step, PlaneFit kind) {
+  const std::string name =
+      fmt::format("grid, {}, step {:g}", kind == PlaneFit::kVertical ? "as published" : "orthogonal", step);
+  Progress progress(name);
+  box.step = step;
+  const Stopwatch watch;
+  const GridResult grid = GridSearch(
+      box, static_cast<int>(start.storeys.size()),
+      [&](const std::array<double, 2>& at, std::span<double> rmse) {
+        for (size_t t = 0; t < rmse.size(); ++t) rmse[t] = start.storeys[t].Rmse(at[0], at[1], kind);
+      },
+      kThreads, [&](double fraction) { progress.Show(fraction); });
+  ComparisonRow row;
+  row.method = name;
+  row.is_grid = true;
+  row.seconds = watch.Seconds();
+  row.effort = static_cast<double>(grid.nodes);
+  row.quantisation = step / std::sqrt(12.0);
+  TurntablePose pose = start.pose;
+  pose.M = grid.best.at[0];
+  pose.N = grid.best.at[1];
+  row.values = Values(pose);
+  row.u.resize(row.values.size());
+  row.S = grid.best.value;
+  row.rms = FlatnessAt(start, pose, kind).rms;
+  if (grid.best.on_edge) row.note = "minimum on the edge";
+  double squares = 0;
+  for (size_t t = 0; t < grid.without.size(); ++t) {
+    pose.M = grid.without[t].at[0];
+    pose.N = grid.without[t].at[1];
+    squares += HeldOutSquares(start, t, pose);
+  }
+  if (!grid.without.empty()) row.held_out_rms = std::sqrt(squares / AllPoints(start));
+  return row;
+}
+
+ComparisonRow JointRow(const TurntableScanner& scanner, const TurntableStart& start, const std::string& name,
+                       Turntable::Residuals residuals, const std::vector<int>& estimate) {
+  const Stopwatch watch;
+  const TurntableFit fit = scanner.Fit(start, residuals, estimate);
+  ComparisonRow row;
+  row.method = name;
+  row.seconds = watch.Seconds();
+  row.effort = fit.solution.fit.iterations;
+  const TurntablePose pose = fit.Pose();
+  row.values = Values(pose);
+  row.u.resize(row.values.size());
+  if (!fit.solution.observability.undetermined.empty()) {
+    row.note = "not determined: " + fit.solution.observability.undetermined.front();
+  } else {
+    const Covariance clustered = ClusteredCovariance(fit.solution.problem, fit.solution.linear);
+    Eigen::Index e = 0;
+    for (const int k : fit.solution.problem.With({Scope::kSystem}, Role::kEstimate)) {
+      if (k <= Turntable::kTiltY) row.u[k] = std::sqrt(clustered.matrix(e, e));
+      ++e;
+    }
+    if (!fit.solution.fit.converged) row.note = "no convergence";
+  }
+  const Flatness flatness = FlatnessAt(start, pose, PlaneFit::kOrthogonal);
+  row.S = flatness.S;
+  row.rms = flatness.rms;
+  if (start.placements.size() < 2) return row;
+  double squares = 0;
+  for (size_t t = 0; t < start.placements.size(); ++t)
+    squares += HeldOutSquares(start, t, scanner.Fit(Without(start, t), residuals, estimate).Pose());
+  row.held_out_rms = std::sqrt(squares / AllPoints(start));
+  return row;
+}
+
+}  // namespace
+
+Result<Comparison> TurntableScanner::Compare() const {
+  SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
+  Comparison comparison{{"M", "N", "tilt_x", "tilt_y"}, {false, false, true, true}, {}};
+  for (const PlaneFit kind : {PlaneFit::kVertical, PlaneFit::kOrthogonal})
+    for (const double step : kSteps) comparison.rows.push_back(GridRow(start, Box(), step, kind));
+  using enum Turntable::Residuals;
+  comparison.rows.push_back(JointRow(*this, start, "joint, point to plane", kPlane, {}));
+  comparison.rows.push_back(JointRow(*this, start, "joint, depth", kDepth, {}));
+  comparison.rows.push_back(
+      JointRow(*this, start, "joint, depth, tilts", kDepth, {Turntable::kTiltX, Turntable::kTiltY}));
+  return comparison;
+}
+
+Result<void> TurntableScanner::WriteSurface(const std::filesystem::path& file) const {
+  SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
+  SCANCAL_ASSIGN_OR_RETURN(OutputFile output, OutputFile::Create(file));
+  SCANCAL_RETURN_IF_ERROR(output.Write("M_mm,N_mm,S_published_mm,S_orthogonal_mm\n"));
+  const GridBox box = Box();
+  const auto [rows, columns] = box.Nodes();
+  const double targets = static_cast<double>(start.storeys.size());
+  for (int64_t i = 0; i < rows; ++i) {
+    for (int64_t j = 0; j < columns; ++j) {
+      const auto [M, N] = box.At(i, j);
+      double published = 0, orthogonal = 0;
+      for (const PlaneStorey& storey : start.storeys) {
+        published += storey.Rmse(M, N, PlaneFit::kVertical) / targets;
+        orthogonal += storey.Rmse(M, N, PlaneFit::kOrthogonal) / targets;
+      }
+      SCANCAL_RETURN_IF_ERROR(
+          output.Write(fmt::format("{:.10g},{:.10g},{:.10g},{:.10g}\n", M, N, published, orthogonal)));
+    }
+  }
+  return output.Commit();
+}
+
+}  // namespace scancal

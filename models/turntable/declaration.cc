@@ -1,0 +1,197 @@
+#include "models/turntable/declaration.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include "io/message.h"
+
+namespace scancal {
+namespace {
+
+// Longer search intervals than any turntable has: metres declared for millimetres.
+constexpr double kImplausibleOffset_mm = 20'000;
+constexpr double kMostNodes = 1e9;
+
+const std::map<std::string, Dimension, std::less<>> kColumns = {
+    {"angle", Dimension::kAngle}, {"bearing", Dimension::kAngle}, {"y", Dimension::kLength},
+    {"z", Dimension::kLength},    {"range", Dimension::kLength},  {"profile", Dimension::kNone}};
+
+Dimension DimensionOf(std::string_view column) {
+  const auto found = kColumns.find(column);
+  return found == kColumns.end() ? Dimension::kNone : found->second;
+}
+
+// Influences of the specification that this version does not model yet: declared ones are named in a warning.
+const std::set<std::string> kNotYetModelled = {
+    "noise_z", "line_correlation", "encoder_cos1", "encoder_sin1", "encoder_cos2", "encoder_sin2", "shear", "linearity",
+    "form",    "flatness",         "one_plate",    "temperature",  "expansion"};
+const std::set<std::string> kVariesWithinData = {"noise_y", "encoder_jitter"};
+
+double UnitFactor(Unit unit, const Units& units) {
+  return units.Of(unit == Unit::kMm ? Dimension::kLength : unit == Unit::kRad ? Dimension::kAngle : Dimension::kNone);
+}
+
+std::optional<WideLayout> ReadLayout(YamlMap map) {
+  if (!map.Has("layout")) return std::nullopt;
+  YamlMap layout = map.Map("layout");
+  WideLayout wide;
+  wide.value = layout.Text("wide");
+  if (wide.value != "y" && wide.value != "range") layout.Fail("wide", "expected y or range");
+  wide.across = wide.value == "range" ? "bearing" : "z";
+  wide.angle_column = static_cast<int>(layout.Number("angle_column", 1));
+  wide.first_column = static_cast<int>(layout.Number("first_column", 2));
+  if (wide.angle_column < 1) layout.Fail("angle_column", "expected a column number, 1 or more");
+  if (wide.first_column < 1) layout.Fail("first_column", "expected a column number, 1 or more");
+  wide.start = layout.Number("start");
+  wide.step = layout.Number("step");
+  if (wide.step == 0) layout.Fail("step", "expected a step that is not zero");
+  return wide;
+}
+
+void ReadKeep(YamlMap target, const Units& units, ScanDeclaration* scan) {
+  if (!target.Has("keep")) return;
+  YamlMap keep = target.Map("keep");
+  for (const std::string& column : keep.Keys()) {
+    const std::array<double, 2> interval = keep.Interval(column);
+    if (column == "lines") {
+      if (interval[0] < 1) keep.Fail(column, "expected line numbers, the first line is 1");
+      scan->format.lines = {static_cast<int64_t>(interval[0]), static_cast<int64_t>(interval[1])};
+    } else {
+      const double unit = units.Of(DimensionOf(column));
+      scan->keep.push_back({column, interval[0] * unit, interval[1] * unit});
+    }
+  }
+}
+
+// Defaults for all targets stand at the top level, a target's own override them.
+ScanDeclaration ReadTarget(YamlMap target, YamlMap top, const Dataset& dataset) {
+  ScanDeclaration scan;
+  scan.name = target.Text("name");
+  if (scan.name.empty()) target.Fail("name", "expected a name");
+  scan.scan = target.Text("scan");
+  if (scan.scan.empty()) target.Fail("scan", "expected the path of a scan file");
+  scan.format.path = dataset.file.parent_path() / scan.scan;
+  scan.format.units = dataset.units;
+  for (YamlMap map : {top, target}) {
+    if (auto layout = ReadLayout(map)) scan.format.layout = layout;
+    if (map.Has("columns")) scan.format.npy_columns = map.Texts("columns");
+    if (map.Has("invalid")) scan.format.invalid = map.Number("invalid");
+  }
+  ReadKeep(target, dataset.units, &scan);
+  for (const auto& [name, dimension] : kColumns) scan.format.columns.push_back({name, dimension, name == "angle"});
+  for (const KeepInterval& keep : scan.keep)
+    if (!kColumns.contains(keep.column)) scan.format.columns.push_back({keep.column, Dimension::kNone, true});
+  return scan;
+}
+
+GridBox ReadSearch(YamlMap top, const Units& units) {
+  YamlMap search = top.Map("search");
+  GridBox box;
+  const std::array<double, 2> m = search.Interval("M"), n = search.Interval("N");
+  for (size_t k = 0; k < 2; ++k) {
+    (k == 0 ? box.lower[0] : box.upper[0]) = m[k] * units.length_in_mm;
+    (k == 0 ? box.lower[1] : box.upper[1]) = n[k] * units.length_in_mm;
+  }
+  for (size_t k = 0; k < 2; ++k)
+    if (std::max(std::abs(box.lower[k]), std::abs(box.upper[k])) > kImplausibleOffset_mm)
+      search.Fail(k == 0 ? "M" : "N", fmt::format("that is {:.3g} m, expected less than 20 m; is units: length: right?",
+                                                  box.upper[k] / 1000));
+  box.step = search.Number("step") * units.length_in_mm;
+  if (!(box.step > 0)) {
+    search.Fail("step", "expected a step greater than zero");
+    box.step = 1;
+  }
+  double nodes = 1;
+  for (size_t k = 0; k < 2; ++k) nodes *= std::floor((box.upper[k] - box.lower[k]) / box.step) + 1;
+  if (nodes > kMostNodes)
+    search.Fail("step", fmt::format("that makes {:.3g} nodes, expected at most 1e9; use a larger step", nodes));
+  return box;
+}
+
+Error InFile(const Dataset& dataset, const std::string& sentence) { return {dataset.file.string() + ": " + sentence}; }
+
+std::vector<std::string> ParameterNames(const Turntable& model) {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : model.quantities())
+    if (quantity.scope == Scope::kSystem) names.push_back(quantity.name);
+  return names;
+}
+
+Result<void> SetParameters(const Dataset& dataset, Turntable* model) {
+  for (const ParameterSetting& setting : dataset.parameters) {
+    const std::string place = "parameters: " + setting.name + ": ";
+    if (setting.name == "yaw" || setting.name == "shift_z" || setting.name == "Z")
+      return InFile(dataset, place +
+                                 "not determined by planes (a turn about the axis or a shift along it moves the whole "
+                                 "scene); it is no parameter, remove it");
+    const int index = Find(model->quantities(), setting.name);
+    if (index < 0 || model->quantities()[index].scope != Scope::kSystem)
+      return InFile(dataset, place + "unknown parameter" + Suggestion(setting.name, ParameterNames(*model)));
+    Quantity& quantity = model->quantity(index);
+    const double unit = UnitFactor(quantity.unit, dataset.units);
+    quantity.role = setting.role == "estimate"   ? Role::kEstimate
+                    : setting.role == "consider" ? Role::kConsider
+                                                 : Role::kHold;
+    quantity.value = setting.value.value_or(0) * unit;
+    quantity.u = setting.u * unit;
+    const bool offset = index == Turntable::kM || index == Turntable::kN;
+    if (offset && quantity.role != Role::kEstimate && !setting.value)
+      return InFile(dataset, place + setting.role + ": expected its value, for example {" + setting.role + ": 123}");
+    if ((index == Turntable::kScaleY || index == Turntable::kScaleZ) && quantity.role == Role::kEstimate &&
+        quantity.u <= 0)
+      return InFile(dataset, place +
+                                 "not determined by planes (M, N, the distances and the normals absorb a scale "
+                                 "exactly); give a prior, {estimate: 0, u: ...}, or consider it");
+  }
+  return {};
+}
+
+Result<void> SetInfluences(const Dataset& dataset, Turntable* model, std::vector<std::string>* warnings) {
+  for (const InfluenceSetting& setting : dataset.influences) {
+    const std::string place = "influences: " + setting.name + ": ";
+    if (kNotYetModelled.contains(setting.name)) {
+      warnings->push_back(place + "declared, but not part of u in this version");
+      continue;
+    }
+    const int index = Find(model->quantities(), setting.name);
+    const bool varies = kVariesWithinData.contains(setting.name);
+    if (index < 0 || !(varies || setting.name == "scale_y" || setting.name == "scale_z"))
+      return InFile(dataset, place + "unknown influence, expected noise_y, encoder_jitter, scale_y, scale_z, ...");
+    if (varies && setting.estimate) continue;  // u comes from the residuals anyway
+    if (setting.estimate)
+      return InFile(dataset,
+                    place + "not determined by planes, expected its standard uncertainty in place of estimate");
+    Quantity& quantity = model->quantity(index);
+    if (quantity.role != Role::kHold) return InFile(dataset, place + "declared twice, here and under parameters");
+    if (setting.u <= 0) continue;
+    quantity.role = Role::kConsider;
+    quantity.u = setting.u * UnitFactor(quantity.unit, dataset.units);
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<TurntableDeclaration> DeclareTurntable(const Dataset& dataset, Turntable* model) {
+  TurntableDeclaration result;
+  result.dataset = dataset;
+  YamlMap top = dataset.yaml;
+  const std::string rotation = top.Text("rotation");
+  if (rotation != "clockwise" && rotation != "counterclockwise")
+    top.Fail("rotation", "expected clockwise or counterclockwise, seen from +Z of the table");
+  result.sense = rotation == "counterclockwise" ? -1 : 1;
+  result.search = ReadSearch(top, dataset.units);
+  std::set<std::string> names;
+  for (YamlMap target : top.Maps("targets")) {
+    result.scans.push_back(ReadTarget(target, top, dataset));
+    if (!names.insert(result.scans.back().name).second) target.Fail("name", "expected a name that no other target has");
+  }
+  if (result.scans.empty()) top.Fail("targets", "expected at least one target");
+  SCANCAL_RETURN_IF_ERROR(top.Finish());
+  SCANCAL_RETURN_IF_ERROR(SetParameters(dataset, model));
+  SCANCAL_RETURN_IF_ERROR(SetInfluences(dataset, model, &result.warnings));
+  return result;
+}
+
+}  // namespace scancal

@@ -1,0 +1,35 @@
+// What a turntable's dataset.yaml declares.
+#pragma once
+#include <string>
+#include <vector>
+#include "io/dataset.h"
+#include "io/scan_reader.h"
+#include "models/turntable.h"
+#include "solver/grid_search.h"
+
+namespace scancal {
+
+struct KeepInterval {
+  std::string column;
+  double lower = 0, upper = 0;  // mm, rad; of an unknown column as in the file
+};
+
+struct ScanDeclaration {  // one target: one placement of the plate
+  std::string name;
+  std::string scan;  // as written
+  ScanFormat format;
+  std::vector<KeepInterval> keep;
+};
+
+struct TurntableDeclaration {
+  Dataset dataset;
+  double sense = 1;  // alpha = sense * reading: clockwise seen from +Z is positive
+  GridBox search;    // of M and N, mm
+  std::vector<ScanDeclaration> scans;
+  std::vector<std::string> warnings;  // what is declared and not yet used
+};
+
+// Takes every key of the data set; the roles of `model`'s quantities are set from parameters and influences.
+Result<TurntableDeclaration> DeclareTurntable(const Dataset& dataset, Turntable* model);
+
+}  // namespace scancal

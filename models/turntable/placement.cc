@@ -1,0 +1,177 @@
+#include "models/turntable/placement.h"
+#include <fmt/format.h>
+#include <glog/logging.h>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include "models/parts/robust_line.h"
+#include "models/turntable/raw_profiles.h"
+
+namespace scancal {
+namespace {
+
+constexpr double kOffLine = 6;  // robust standard deviations: two points in 1e9 of a normal distribution
+constexpr size_t kFewestForRobust = 5;
+constexpr double kRounding = 1e-7;              // of a profile's extent: what is nearer to its line is on it
+constexpr double kImplausibleLength_mm = 50e3;  // no plate is seen from farther away
+constexpr double kDegree = std::numbers::pi / 180;
+const char kReasonOffLine[] = "off the line of its profile";
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double Extent(const RawProfile& profile) {
+  const auto [y0, y1] = std::minmax_element(profile.y.begin(), profile.y.end());
+  const auto [z0, z1] = std::minmax_element(profile.z.begin(), profile.z.end());
+  return std::hypot(*y1 - *y0, *z1 - *z0);
+}
+
+void Keep(const std::vector<size_t>& which, std::vector<double>* values) {
+  if (values->empty()) return;
+  for (size_t k = 0; k < which.size(); ++k) (*values)[k] = (*values)[which[k]];
+  values->resize(which.size());
+}
+
+// Removes the points off each profile's own line. A profile's scale is never taken smaller than the placement's median,
+// nor than the steps in which the sensor measures.
+double SetAsideOffLine(std::vector<RawProfile>* profiles) {
+  std::vector<RobustLine> lines;
+  std::vector<double> scales, resolutions;
+  for (const RawProfile& profile : *profiles) {
+    lines.push_back(FitRobustLine(profile.y, profile.z));
+    if (profile.y.size() < kFewestForRobust) continue;
+    scales.push_back(lines.back().scale);
+    resolutions.push_back(Resolution(profile.range.empty() ? profile.y : profile.range));
+  }
+  const double common = std::max(Median(scales), Median(resolutions));
+  double removed = 0;
+  for (size_t k = 0; k < profiles->size(); ++k) {
+    RawProfile& profile = (*profiles)[k];
+    if (profile.y.size() < kFewestForRobust) continue;
+    const double within = std::max(kOffLine * std::max(lines[k].scale, common), kRounding * Extent(profile));
+    std::vector<size_t> which;
+    for (size_t i = 0; i < profile.y.size(); ++i)
+      if (std::abs(lines[k].Distance(profile.y[i], profile.z[i])) <= within) which.push_back(i);
+    removed += static_cast<double>(profile.y.size() - which.size());
+    if (which.size() == profile.y.size()) continue;
+    for (auto* column : {&profile.y, &profile.z, &profile.range}) Keep(which, column);
+  }
+  return removed;
+}
+
+// Range at the profile's own line, in the direction of each point: free of the point's own noise.
+std::vector<double> RangesOnLine(std::span<const double> y, std::span<const double> z) {
+  const RobustLine line = FitRobustLine(y, z);
+  const double offset = line.Distance(0, 0);
+  std::vector<double> ranges(y.size());
+  for (size_t i = 0; i < y.size(); ++i) {
+    const double measured = std::hypot(y[i], z[i]);
+    const double towards = (line.Distance(y[i], z[i]) - offset) / measured;  // -offset / range on the line
+    const double on_line = towards != 0 ? -offset / towards : measured;
+    ranges[i] = on_line > 0.5 * measured && on_line < 2 * measured ? on_line : measured;
+  }
+  return ranges;
+}
+
+PureError PureErrorOf(double sum_of_squares, double count) { return {sum_of_squares, std::max(0.0, count - 2)}; }
+
+// What no line explains in units of the range: the rows (y, z, 1) w with the column of ones last, see Turntable.
+double RangePureError(const ProfileFactor& ranged) {
+  const Eigen::Matrix3d columns = ranged(Eigen::all, std::vector{2, 1, 0});
+  const Eigen::HouseholderQR<Eigen::Matrix3d> qr(columns);
+  return qr.matrixQR()(2, 2) * qr.matrixQR()(2, 2);
+}
+
+}  // namespace
+
+double Placement::Points() const {
+  double sum = 0;
+  for (const Profile& profile : profiles) sum += profile.count;
+  return sum;
+}
+
+double Placement::Sweep() const {
+  const auto [lowest, highest] = std::minmax_element(profiles.begin(), profiles.end(),
+                                                     [](const auto& a, const auto& b) { return a.alpha < b.alpha; });
+  return highest->alpha - lowest->alpha;
+}
+
+Profile CompressProfile(double alpha, std::span<const double> y, std::span<const double> z,
+                        std::span<const double> range) {
+  CHECK(!y.empty());
+  Profile profile;
+  profile.alpha = alpha;
+  profile.count = static_cast<double>(y.size());
+  profile.factor = Factor(y, z);
+  if (range.empty()) {
+    profile.pure_error = PureErrorOf(profile.factor(2, 2) * profile.factor(2, 2), profile.count);
+  } else {
+    profile.ranged = Factor(y, z, RangesOnLine(y, z));
+    profile.pure_error = PureErrorOf(RangePureError(*profile.ranged), profile.count);
+  }
+  return profile;
+}
+
+Result<Placement> ReadPlacement(const ScanDeclaration& scan, double sense) {
+  SCANCAL_ASSIGN_OR_RETURN(RawScan raw, ReadRawScan(scan, sense));
+  Placement placement;
+  placement.name = scan.name;
+  placement.missing = raw.missing;
+  if (const double removed = SetAsideOffLine(&raw.profiles); removed > 0) placement.set_aside[kReasonOffLine] = removed;
+  for (RawProfile& profile : raw.profiles) {
+    for (const auto* column : {&profile.y, &profile.z})
+      for (const double value : *column) placement.largest = std::max(placement.largest, std::abs(value));
+    placement.profiles.push_back(CompressProfile(profile.alpha, profile.y, profile.z, profile.range));
+    profile = {};  // the points are gone from here on
+  }
+  return placement;
+}
+
+std::vector<Turntable::View> Views(const std::vector<Profile>& profiles, Turntable::Residuals residuals) {
+  std::vector<Turntable::View> views;
+  for (const Profile& profile : profiles) {
+    const bool along_range = residuals == Turntable::Residuals::kDepth && profile.ranged;
+    const auto points = PseudoPoints(along_range ? *profile.ranged : profile.factor);
+    views.push_back({profile.alpha, {points.begin(), points.end()}, profile.count, along_range});
+  }
+  return views;
+}
+
+Result<void> CheckPlausible(const std::vector<Placement>& placements) {
+  double widest = 0, largest = 0;
+  for (const Placement& placement : placements) {
+    const double sweep = placement.Sweep();
+    widest = std::max(widest, sweep);
+    largest = std::max(largest, placement.largest);
+    if (sweep > std::numbers::pi)
+      return Error{
+          fmt::format("target {}: its angles span {:.4g} rad ({:.4g} deg), but a plane is seen over less than half "
+                      "a turn; are the angles degrees, declared as rad?",
+                      placement.name, sweep, sweep / kDegree)};
+    if (placement.largest > kImplausibleLength_mm)
+      return Error{
+          fmt::format("target {}: found a coordinate of {:.4g} m, expected less than {:g} m; is units: length: "
+                      "right (mm declared as m?)",
+                      placement.name, placement.largest / 1000, kImplausibleLength_mm / 1000)};
+  }
+  if (largest < 1)
+    return Error{
+        fmt::format("the largest coordinate is {:.4g} mm, expected the size of a plate; is units: length: right "
+                    "(m declared as mm?)",
+                    largest)};
+  if (widest == 0)
+    return Error{"M, N: not determined: every target has one angle only; the profiler must turn while it scans"};
+  if (widest < kDegree)
+    return Error{
+        fmt::format("the angles span {:.3g} deg, expected more than one; if the file holds radians (a sweep of "
+                    "{:.3g} deg), declare angle: rad",
+                    widest / kDegree, widest / kDegree / kDegree)};
+  return {};
+}
+
+}  // namespace scancal

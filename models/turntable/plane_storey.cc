@@ -1,0 +1,99 @@
+#include "models/turntable/plane_storey.h"
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <cmath>
+#include "solver/triangular_factor.h"
+
+namespace scancal {
+namespace {
+
+// Modified Gram-Schmidt of three columns; the last diagonal entry is the norm of what the first two leave of the third.
+template <class Vector>
+Eigen::Matrix3d Triangle(Vector a, Vector b, Vector c) {
+  Eigen::Matrix3d r = Eigen::Matrix3d::Zero();
+  r(0, 0) = a.norm();
+  if (r(0, 0) > 0) a /= r(0, 0);
+  r(0, 1) = a.dot(b);
+  b -= r(0, 1) * a;
+  r(0, 2) = a.dot(c);
+  c -= r(0, 2) * a;
+  r(1, 1) = b.norm();
+  if (r(1, 1) > 0) b /= r(1, 1);
+  r(1, 2) = b.dot(c);
+  c -= r(1, 2) * b;
+  r(2, 2) = c.norm();
+  return r;
+}
+
+// By inverse iteration, which keeps the small value's relative accuracy.
+double SmallestSingularValue(const Eigen::Matrix3d& r) {
+  if (!(r(0, 0) > 0) || !(r(1, 1) > 0) || !(r(2, 2) > 0)) return 0;
+  const auto upper = r.triangularView<Eigen::Upper>();
+  Eigen::Vector3d v = upper.solve(Eigen::Vector3d(0, 0, 1));
+  double sigma = 0;
+  for (int k = 0; k < 30; ++k) {
+    v.normalize();
+    const Eigen::Vector3d w = upper.transpose().solve(v);
+    const double next = 1 / w.norm();  // sigma of w / |w|
+    v = upper.solve(w);
+    if (std::abs(next - sigma) <= 1e-13 * next) return next;
+    sigma = next;
+  }
+  return sigma;
+}
+
+}  // namespace
+
+PlaneStorey::PlaneStorey(std::span<const Turntable::View> profiles, const TurntablePose& tilts) {
+  TriangularFactor factor(6);
+  TurntablePose at_axis = tilts;
+  at_axis.M = at_axis.N = 0;
+  Eigen::Matrix<double, Eigen::Dynamic, 6> rows;
+  for (const Turntable::View& profile : profiles) {
+    rows.resize(std::ssize(profile.points), 6);
+    const double c = std::cos(profile.alpha), s = std::sin(profile.alpha);
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+      const PseudoPoint& p = profile.points[i];
+      const Eigen::Vector3d p0 = at_axis.Point(profile.alpha, p.y, p.z);
+      rows.row(i) << 1, c, s, p0.x(), p0.y(), p0.z();
+      rows.row(i) *= p.weight;
+    }
+    factor.Add(rows);
+  }
+  const Eigen::Matrix<double, 6, 6> r = factor.R();
+  const double sign = r(0, 0) < 0 ? -1 : 1;
+  root_n_ = sign * r(0, 0);
+  mean_ = sign * r.block<1, 5>(0, 1);
+  cos_ = r.block<5, 1>(1, 1);
+  sin_ = r.block<5, 1>(1, 2);
+  x0_ = r.block<5, 1>(1, 3);
+  y0_ = r.block<5, 1>(1, 4);
+  z_ = r.block<5, 1>(1, 5);
+}
+
+Eigen::Matrix3d PlaneStorey::Centred(double M, double N) const {
+  return Triangle<Vector5>(M * cos_ - N * sin_ + x0_, -M * sin_ - N * cos_ + y0_, z_);  // eq. (7), simplified
+}
+
+double PlaneStorey::Rmse(double M, double N, PlaneFit fit) const {
+  const Eigen::Matrix3d r = Centred(M, N);
+  if (fit == PlaneFit::kOrthogonal) return SmallestSingularValue(r) / root_n_;
+  const double B = r(1, 1) > 0 ? r(1, 2) / r(1, 1) : 0, A = r(0, 0) > 0 ? (r(0, 2) - r(0, 1) * B) / r(0, 0) : 0;
+  return r(2, 2) / (root_n_ * std::sqrt(A * A + B * B + 1));
+}
+
+std::pair<Eigen::Vector3d, double> PlaneStorey::FitPlane(double M, double N) const {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(Centred(M, N), Eigen::ComputeFullV);
+  Eigen::Vector3d normal = svd.matrixV().col(2);
+  const Eigen::Vector3d mean =
+      Eigen::Vector3d(M * mean_[0] - N * mean_[1] + mean_[2], -M * mean_[1] - N * mean_[0] + mean_[3], mean_[4]) /
+      root_n_;
+  double distance = normal.dot(mean);
+  if (distance < 0) {
+    normal = -normal;
+    distance = -distance;
+  }
+  return {normal, distance};
+}
+
+}  // namespace scancal

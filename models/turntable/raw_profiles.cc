@@ -1,0 +1,123 @@
+#include "models/turntable/raw_profiles.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include "io/message.h"
+#include "io/progress.h"
+
+namespace scancal {
+namespace {
+
+// Which rows of the batch every interval of `keep` keeps; y and z may be derived from bearing and range.
+Result<std::vector<char>> Kept(const ScanDeclaration& scan, const ScanBatch& batch, const SensorColumns& points) {
+  std::vector<char> kept(batch.size(), 1);
+  for (const KeepInterval& interval : scan.keep) {
+    const int found = batch.Find(interval.column);
+    const std::vector<double>* values = found >= 0               ? &batch.columns[found]
+                                        : interval.column == "y" ? &points.y
+                                        : interval.column == "z" ? &points.z
+                                                                 : nullptr;
+    if (!values)
+      return Error{scan.format.path.string() + ": keep: " + interval.column + ": no such column, found " +
+                   Listed(batch.names)};
+    for (size_t i = 0; i < kept.size(); ++i)
+      kept[i] &= (*values)[i] >= interval.lower && (*values)[i] <= interval.upper;
+  }
+  return kept;
+}
+
+// Groups points into profiles as they come.
+class Gatherer {
+ public:
+  explicit Gatherer(const std::filesystem::path& path) : path_(path) {}
+
+  Result<void> Add(double alpha, const double* key, double y, double z, const double* range) {
+    RawProfile* profile = key ? ByKey(*key, alpha) : ByAngle(alpha);
+    if (profile->alpha != alpha) {
+      return Error{fmt::format("{}: profile {:g}: found angles {:.9g} and {:.9g} rad, expected one angle a profile",
+                               path_.string(), *key, profile->alpha, alpha)};
+    }
+    profile->y.push_back(y);
+    profile->z.push_back(z);
+    if (range) profile->range.push_back(*range);
+    return {};
+  }
+
+  std::vector<RawProfile> Take() {
+    std::stable_sort(profiles_.begin(), profiles_.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+    return std::move(profiles_);
+  }
+
+ private:
+  RawProfile* ByAngle(double alpha) {
+    if (profiles_.empty() || profiles_.back().alpha != alpha)
+      profiles_.push_back({static_cast<double>(profiles_.size()), alpha, {}, {}, {}});
+    return &profiles_.back();
+  }
+  RawProfile* ByKey(double key, double alpha) {
+    if (!profiles_.empty() && profiles_[last_].key == key) return &profiles_[last_];
+    const auto [found, fresh] = index_.try_emplace(key, profiles_.size());
+    if (fresh) profiles_.push_back({key, alpha, {}, {}, {}});
+    last_ = found->second;
+    return &profiles_[last_];
+  }
+
+  std::filesystem::path path_;
+  std::vector<RawProfile> profiles_;
+  std::map<double, size_t> index_;
+  size_t last_ = 0;
+};
+
+}  // namespace
+
+Result<SensorColumns> ToSensor(const ScanDeclaration& scan, double sense, const ScanBatch& batch) {
+  SensorColumns points;
+  points.alpha = batch.columns[batch.Find("angle")];
+  for (double& alpha : points.alpha) alpha *= sense;
+  const int y = batch.Find("y"), z = batch.Find("z"), bearing = batch.Find("bearing"), range = batch.Find("range");
+  if (bearing >= 0 && range >= 0) {
+    points.range = batch.columns[range];
+    points.y.resize(batch.size());
+    points.z.resize(batch.size());
+    for (size_t i = 0; i < batch.size(); ++i) {
+      points.y[i] = points.range[i] * std::cos(batch.columns[bearing][i]);
+      points.z[i] = points.range[i] * std::sin(batch.columns[bearing][i]);
+    }
+  } else if (y >= 0 && z >= 0) {
+    points.y = batch.columns[y];
+    points.z = batch.columns[z];
+  } else {
+    return Error{scan.format.path.string() + ": found columns " + Listed(batch.names) +
+                 ", expected angle with y and z, or with bearing and range"};
+  }
+  return points;
+}
+
+Result<RawScan> ReadRawScan(const ScanDeclaration& scan, double sense) {
+  SCANCAL_ASSIGN_OR_RETURN(ScanReader reader, ScanReader::Open(scan.format));
+  Progress progress("reading " + scan.scan);
+  Gatherer gatherer(scan.format.path);
+  ScanBatch batch;
+  for (;;) {
+    SCANCAL_ASSIGN_OR_RETURN(const bool more, reader.Next(&batch));
+    if (!more) break;
+    SCANCAL_ASSIGN_OR_RETURN(const SensorColumns points, ToSensor(scan, sense, batch));
+    SCANCAL_ASSIGN_OR_RETURN(const std::vector<char> kept, Kept(scan, batch, points));
+    const int profile = batch.Find("profile");
+    for (size_t i = 0; i < batch.size(); ++i) {
+      if (!kept[i]) continue;
+      SCANCAL_RETURN_IF_ERROR(gatherer.Add(points.alpha[i], profile >= 0 ? &batch.columns[profile][i] : nullptr,
+                                           points.y[i], points.z[i],
+                                           points.range.empty() ? nullptr : &points.range[i]));
+    }
+    progress.Show(static_cast<double>(reader.bytes_read()) /
+                  static_cast<double>(std::max<int64_t>(1, reader.bytes_total())));
+  }
+  RawScan result{gatherer.Take(), static_cast<double>(reader.missing())};
+  if (result.profiles.empty())
+    return Error{scan.format.path.string() + ": target " + scan.name + ": no point is left; widen its keep: intervals"};
+  return result;
+}
+
+}  // namespace scancal

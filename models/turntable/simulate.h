@@ -1,0 +1,56 @@
+// Data sets of the turntable with known truth.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+#include "io/result.h"
+#include "models/turntable.h"
+#include "solver/grid_search.h"
+
+namespace scancal {
+
+struct TurntableScene {
+  TurntablePose pose{123, 409, 0, 0, 0, 0};
+  int placements = 3;
+  int profiles = 200, points = 200;           // per placement, per profile
+  double sweep = 30 * 0.017453292519943295;   // rad, from -sweep/2 to sweep/2
+  double line_length = 200;                   // mm, along z
+  double noise_y = 0.05;                      // mm, standard deviation along depth
+  double line_correlation = 1;                // points: integrated correlation length of that noise; 1 = white
+  double encoder_jitter = 0;                  // rad, one error a profile
+  double form = 0;                            // mm rms: smooth deviation of the plate, one for all placements
+  double outliers = 0;                        // share of points that are spikes within +-30 mm of the plate
+  double missing = 0;                         // share of points without a return
+  GridBox search{{110, 395}, {130, 425}, 1};  // written to dataset.yaml
+  uint64_t seed = 1;
+};
+
+// A search interval of these widths (mm) around the pose, at whole millimetres and not centred: as an installer would
+// guess it. The published M 123, N 409 with widths 20 and 30 give the published [110, 130] x [395, 425].
+GridBox SearchAround(const TurntablePose& pose, double width_M, double width_N);
+
+struct SimulatedProfile {
+  double alpha = 0;          // as recorded: with jitter
+  std::vector<double> y, z;  // mm; y is nan where there is no return
+};
+
+struct SimulatedPlacement {
+  std::string name;
+  Eigen::Vector3d normal;  // truth
+  double distance = 0;
+  std::vector<SimulatedProfile> profiles;
+};
+
+// Placements of a plate that lean by 5 to 20 degrees from the axis and are turned about it by up to +-25 degrees, 75 mm
+// in front of the profiler. Noise of each placement is a stream of the seed: the same for any number of placements.
+std::vector<SimulatedPlacement> SimulateTurntable(const TurntableScene& scene);
+
+enum class ScanFileFormat { kCsv, kNpy };
+// folder/dataset.yaml, folder/<placement>.csv and folder/truth.json. CSV rounds angles to 1e-6 deg, lengths to 0.1 um;
+// npy keeps every digit. Refuses scenes that cannot be seen (the profiler looks past a plate, counts below one).
+Result<void> WriteSimulatedTurntable(const TurntableScene& scene, ScanFileFormat format,
+                                     const std::filesystem::path& folder);
+
+}  // namespace scancal

@@ -1,0 +1,61 @@
+// The turntable as a Scanner: search, start, verdicts by name.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+#include "models/scanner.h"
+#include "models/turntable.h"
+#include "models/turntable/declaration.h"
+#include "models/turntable/placement.h"
+#include "models/turntable/plane_storey.h"
+
+namespace scancal {
+
+// Placements with everything that lies off the plate set aside, and the minimum of the orthogonal S: where refinement
+// starts.
+struct TurntableStart {
+  std::vector<Placement> placements;
+  std::vector<PlaneStorey> storeys;  // one a placement, at the tilts that the data set declares
+  GridResult grid;
+  TurntablePose pose;  // at the minimum
+};
+
+// A joint fit of M, N, the planes, and what else is estimated.
+struct TurntableFit {
+  std::vector<Turntable::Target> targets;  // as they entered: the planes from which normal_1, normal_2, distance count
+  Solution solution;
+  double sigma = 1;  // by which the rows were divided, mm
+  TurntablePose Pose() const;
+  std::pair<Eigen::Vector3d, double> Plane(size_t target) const;
+};
+
+class TurntableScanner final : public Scanner {
+ public:
+  // model: carries the roles of the quantities.
+  TurntableScanner(TurntableDeclaration declaration, Turntable model, std::vector<Placement> placements);
+  std::string Describe() const override;
+  std::vector<std::filesystem::path> Files() const override;
+  Result<Calibration> Calibrate(const RefineChoice& choice) const override;
+  Result<Comparison> Compare() const override;
+  Result<void> WriteSurface(const std::filesystem::path& file) const override;
+
+  // The search over the declared box; M or N that are not estimated keep their value.
+  Result<TurntableStart> Initialize() const;
+  // The placements of `start`; estimate: indices of further quantities to be estimated (Turntable::kTiltX).
+  TurntableFit Fit(const TurntableStart& start, Turntable::Residuals residuals, const std::vector<int>& estimate = {},
+                   int max_iterations = 100) const;
+  // The box of the search with the declared step.
+  GridBox Box() const;
+
+ private:
+  TurntableDeclaration declaration_;
+  Turntable model_;
+  std::vector<Placement> placements_;
+};
+
+Result<std::unique_ptr<Scanner>> LoadTurntable(const Dataset& dataset);
+Result<int64_t> TransformTurntable(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
+
+inline constexpr ScannerKind kTurntable = {"turntable", &LoadTurntable, &TransformTurntable};
+
+}  // namespace scancal

@@ -1,0 +1,120 @@
+#include "models/turntable/verdicts.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include "io/message.h"
+
+namespace scancal {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kPerpendicular = 1 * kDegree;  // a plate's normal nearer to the axis tells nothing of M and N
+constexpr double kApart = 5 * kDegree;          // two placements are different
+constexpr double kNarrowSweep = 5 * kDegree;
+constexpr double kEdgeOn = 0.02;  // cosine of the incidence
+
+// Smallest |n . d| over the profiles of a placement, d the direction along which the sensor measures.
+double LeastIncidence(const Placement& placement, const TurntablePose& pose, const Eigen::Vector3d& normal) {
+  double least = 1;
+  for (const Profile& profile : placement.profiles) {
+    const PseudoPoint p = PseudoPoints(profile.factor)[1];
+    const Eigen::Vector3d origin = pose.Point(profile.alpha, 0, 0);
+    const Eigen::Vector3d towards = placement.IsLidar() ? pose.Point(profile.alpha, p.y, p.z) - origin
+                                                        : Eigen::Vector3d(pose.Point(profile.alpha, 1, 0) - origin);
+    least = std::min(least, std::abs(normal.dot(towards.normalized())));
+  }
+  return least;
+}
+
+// Largest angle between two normals, their signs aside.
+double LargestAngle(const TurntableFit& fit) {
+  double largest = 0;
+  for (size_t i = 0; i < fit.targets.size(); ++i)
+    for (size_t j = 0; j < i; ++j)
+      largest = std::max(largest, std::acos(std::min(1.0, std::abs(fit.Plane(i).first.dot(fit.Plane(j).first)))));
+  return largest;
+}
+
+const Parameter* LeastKnownLength(const Calibration& calibration) {
+  const Parameter* worst = nullptr;
+  for (const Parameter& p : calibration.parameters)
+    if (p.role == Role::kEstimate && p.unit == Unit::kMm && (!worst || p.u > worst->u)) worst = &p;
+  return worst;
+}
+
+void JudgeOrientations(const TurntableFit& fit, Calibration* calibration) {
+  const double angle = LargestAngle(fit);
+  const Parameter* worst = LeastKnownLength(*calibration);
+  if (angle >= kApart || !worst) return;
+  const std::string which = fit.targets.size() == 1
+                                ? "there is only one placement of the plate"
+                                : fmt::format("the normals of all placements lie within {:.2g} deg", angle / kDegree);
+  calibration->unreliable.push_back(
+      which + "; " + worst->name + fmt::format(" suffers most (u = {:.2g} mm); ", worst->u) +
+      "add a placement with the plate turned about the vertical by 20 deg or more against the others");
+}
+
+void JudgeSearch(const GridBox& box, const TurntableStart& start, Calibration* calibration) {
+  if (start.grid.best.on_edge)
+    calibration->unreliable.push_back(
+        fmt::format("the grid minimum M = {:g}, N = {:g} mm lies on the edge of the search interval; "
+                    "widen search:",
+                    start.grid.best.at[0], start.grid.best.at[1]));
+  for (const size_t k : {0, 1}) {
+    const Parameter* p = calibration->Find(k == 0 ? "M" : "N");
+    if (p->role == Role::kEstimate && (p->value < box.lower[k] || p->value > box.upper[k]) && !start.grid.best.on_edge)
+      calibration->warnings.push_back(p->name + fmt::format(" = {:g} mm lies outside the search interval", p->value));
+  }
+}
+
+}  // namespace
+
+Result<void> CheckOrientations(const Quantities& quantities, const TurntableStart& start) {
+  bool all_perpendicular = true;
+  for (size_t t = 0; t < start.placements.size(); ++t) {
+    const Eigen::Vector3d normal = start.storeys[t].FitPlane(start.pose.M, start.pose.N).first;
+    all_perpendicular &= std::abs(normal.z()) > std::cos(kPerpendicular);
+  }
+  std::vector<std::string> names;
+  for (const int k : {Turntable::kM, Turntable::kN})
+    if (quantities[k].role == Role::kEstimate && quantities[k].u <= 0) names.push_back(quantities[k].name);
+  if (all_perpendicular && !names.empty())
+    return Error{Listed(names) +
+                 ": not determined: every plate is perpendicular to the axis, and such a plane looks the same "
+                 "for every offset; stand the plate up, 5 to 20 deg from the axis"};
+  for (size_t t = 0; t < start.placements.size(); ++t) {
+    const Eigen::Vector3d normal = start.storeys[t].FitPlane(start.pose.M, start.pose.N).first;
+    if (LeastIncidence(start.placements[t], start.pose, normal) < kEdgeOn)
+      return Error{
+          "target " + start.placements[t].name +
+          ": the sensor sees the plate edge-on, where depth tells nothing; narrow its keep: angle, or leave it out"};
+  }
+  return {};
+}
+
+Result<void> CheckDetermined(const TurntableFit& fit) {
+  const Observability& seen = fit.solution.observability;
+  if (!seen.undetermined_targets.empty())
+    return Error{"target " + Listed(seen.undetermined_targets) +
+                 ": its plane is not determined; it needs profiles at two angles or more"};
+  if (!seen.undetermined.empty())
+    return Error{Listed(seen.undetermined) + ": not determined by these placements; hold " +
+                 (seen.undetermined.size() == 1 ? "it" : "one of them") + " or give a prior, {estimate: 0, u: ...}"};
+  return {};
+}
+
+void Judge(const GridBox& box, const TurntableStart& start, const TurntableFit& fit, Calibration* calibration) {
+  JudgeSearch(box, start, calibration);
+  JudgeOrientations(fit, calibration);
+  double widest = 0;
+  for (const Placement& placement : start.placements) widest = std::max(widest, placement.Sweep());
+  if (widest < kNarrowSweep)
+    calibration->warnings.push_back(
+        fmt::format("the sweep of {:.2g} deg is too narrow to tell M and N well: a wider one is the cheapest gain; if "
+                    "the file holds "
+                    "radians, declare angle: rad",
+                    widest / kDegree));
+}
+
+}  // namespace scancal

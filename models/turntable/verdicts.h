@@ -1,0 +1,16 @@
+// What may go wrong with planes on a turntable, told by name.
+#pragma once
+#include "models/turntable/turntable_scanner.h"
+
+namespace scancal {
+
+// Before the fit: plates that determine nothing (perpendicular to the axis), or that are seen edge-on.
+Result<void> CheckOrientations(const Quantities& quantities, const TurntableStart& start);
+
+// After the fit: quantities without effect of their own.
+Result<void> CheckDetermined(const TurntableFit& fit);
+
+// Doubts about a computed result: minimum on the edge, parallel placements, a narrow sweep.
+void Judge(const GridBox& box, const TurntableStart& start, const TurntableFit& fit, Calibration* calibration);
+
+}  // namespace scancal

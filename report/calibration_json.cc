@@ -1,0 +1,132 @@
+#include "report/calibration_json.h"
+#include <cmath>
+
+namespace scancal {
+namespace {
+
+constexpr int kFormatVersion = 1;
+
+// JSON has no infinity: what is not known is null.
+Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json ParameterJson(const Parameter& p) {
+  Json json = {
+      {"name", p.name}, {"unit", Name(p.unit)}, {"role", Name(p.role)}, {"value", Number(p.value)}, {"u", Number(p.u)}};
+  if (p.role != Role::kEstimate) return json;
+  json["k"] = Number(p.k);
+  json["U"] = Number(p.U);
+  json["dof"] = Number(p.dof);
+  json["u_naive"] = Number(p.u_naive);
+  json["u_clustered"] = Number(p.u_clustered);
+  json["u_jackknife"] = p.u_jackknife > 0 ? Number(p.u_jackknife) : Json(nullptr);
+  return json;
+}
+
+Json TargetJson(const TargetSummary& target) {
+  double set_aside = 0;
+  for (const auto& [reason, count] : target.set_aside) set_aside += count;
+  Json json = {{"name", target.name},
+               {"points", target.points},
+               {"missing", target.missing},
+               {"set_aside", set_aside},
+               {"set_aside_reasons", target.set_aside}};
+  for (const auto& [name, values] : target.geometry) json[name] = values.size() == 1 ? Json(values[0]) : Json(values);
+  json["rms"] = Number(target.rms);
+  return json;
+}
+
+Json ByParameter(const std::vector<std::string>& names, const std::vector<double>& values) {
+  Json json = Json::object();
+  for (size_t k = 0; k < values.size(); ++k) json[names[k]] = Number(values[k]);
+  return json;
+}
+
+Json BudgetJson(const Calibration& calibration) {
+  Json lines = Json::array();
+  for (const BudgetLine& line : calibration.budget)
+    lines.push_back({{"source", line.source},
+                     {"value", Number(line.u)},
+                     {"unit", Name(line.unit)},
+                     {"sensitivity", ByParameter(calibration.estimated, line.sensitivity)},
+                     {"u", ByParameter(calibration.estimated, line.contribution)}});
+  return lines;
+}
+
+Json JackknifeJson(const Calibration& calibration) {
+  Json list = Json::array();
+  for (size_t t = 0; t < calibration.jackknife.size(); ++t)
+    list.push_back({{"without", calibration.targets[t].name},
+                    {"value", ByParameter(calibration.estimated, calibration.jackknife[t])}});
+  return list;
+}
+
+}  // namespace
+
+Json ToJson(const Calibration& c) {
+  Json json = {{"scancal", kFormatVersion}, {"model", c.model}, {"name", c.name}, {"residual", c.residual}};
+  json["status"] = c.ok() ? "ok" : "unreliable";
+  json["unreliable"] = c.unreliable;
+  json["warnings"] = c.warnings;
+  json["parameters"] = Json::array();
+  for (const Parameter& parameter : c.parameters) json["parameters"].push_back(ParameterJson(parameter));
+  json["covariance"] = Json::array();
+  for (Eigen::Index i = 0; i < c.covariance.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < c.covariance.cols(); ++j) row.push_back(Number(c.covariance(i, j)));
+    json["covariance"].push_back(row);
+  }
+  json["covariance_of"] = c.estimated;
+  json["grid"] = {{"step", c.grid.step}, {"S", Number(c.grid.S)}, {"nodes", c.grid.nodes}};
+  for (size_t k = 0; k < c.grid.at.size(); ++k) json["grid"][c.grid.names[k]] = c.grid.at[k];
+  json["targets"] = Json::array();
+  for (const TargetSummary& target : c.targets) json["targets"].push_back(TargetJson(target));
+  json["sigma"] = Number(c.sigma);
+  json["pure_error_sigma"] = Number(c.lack_of_fit.pure_error_sigma);
+  json["lack_of_fit"] = Json::object();
+  if (c.lack_of_fit.dof1 > 0)
+    json["lack_of_fit"] = {
+        {"F", c.lack_of_fit.F}, {"dof1", c.lack_of_fit.dof1}, {"dof2", c.lack_of_fit.dof2}, {"p", c.lack_of_fit.p}};
+  json["condition"] = Number(c.condition);
+  json["weakest"] = c.weakest;
+  json["budget"] = BudgetJson(c);
+  json["compare"] = Json::array();
+  json["surface"] = Json::object();
+  json["jackknife"] = JackknifeJson(c);
+  json["montecarlo"] = Json::object();
+  json["residuals"] = Json::object();
+  json["volume"] = Json::object();
+  json["data"] = {{"factors", Json::array()}, {"segments", ""}};
+  json["converged"] = c.converged;
+  json["iterations"] = c.iterations;
+  json["inputs"] = Json::array();
+  for (const InputFile& input : c.inputs) json["inputs"].push_back({{"file", input.file}, {"sha256", input.sha256}});
+  json["command"] = c.command;
+  json["version"] = c.version;
+  return json;
+}
+
+Result<Calibration> CalibrationFromJson(const Json& json, const std::string& file) {
+  const auto expected = [&](const std::string& what) {
+    return Error{file + ": expected " + what + "; is it a calibration.json?"};
+  };
+  if (!json.is_object() || !json.contains("scancal") || !json["scancal"].is_number())
+    return expected("a format version, \"scancal\": 1");
+  if (json["scancal"] != kFormatVersion) return expected("format version 1, found " + json["scancal"].dump());
+  if (!json.contains("model") || !json["model"].is_string()) return expected("\"model\"");
+  if (!json.contains("parameters") || !json["parameters"].is_array()) return expected("a list of \"parameters\"");
+  Calibration result;
+  result.model = json["model"];
+  if (json.value("status", "ok") != "ok") result.unreliable.push_back("the calibration says so of itself");
+  for (const Json& each : json["parameters"]) {
+    if (!each.is_object() || !each.contains("name") || !each["name"].is_string())
+      return expected("a name for every parameter");
+    const std::string name = each["name"];
+    if (!each.contains("value") || !each["value"].is_number()) return expected("a number as \"value\" of " + name);
+    Parameter& parameter = result.parameters.emplace_back();
+    parameter.name = name;
+    parameter.value = each["value"];
+  }
+  return result;
+}
+
+}  // namespace scancal

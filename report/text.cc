@@ -1,0 +1,102 @@
+#include "report/text.h"
+#include <cmath>
+#include "report/text_table.h"
+
+namespace scancal {
+namespace {
+
+std::string Shown(double number) { return number > 0 ? Significant(number, 2) : "-"; }
+
+std::string Parameters(const Calibration& c) {
+  TextTable table({"", "value", "unit", "u", "U (95 %)", "k", "dof", "u naive", "u clustered", "u jackknife"});
+  for (const Parameter& p : c.parameters) {
+    if (p.role == Role::kHold && p.value == 0) continue;
+    if (p.role != Role::kEstimate) {
+      table.Add({p.name, Concise(p.value, p.u), Name(p.unit), Shown(p.u), "", "", "", "", "",
+                 p.role == Role::kHold ? "held" : "considered"});
+      continue;
+    }
+    table.Add({p.name, Concise(p.value, p.u), Name(p.unit), Shown(p.u), Shown(p.U), Significant(p.k, 3),
+               Count(std::floor(p.dof)), Shown(p.u_naive), Shown(p.u_clustered), Shown(p.u_jackknife)});
+  }
+  return table.Text();
+}
+
+std::string Targets(const Calibration& c) {
+  TextTable table({"target", "points", "missing", "set aside", "rms/mm"});
+  std::string reasons;
+  for (const TargetSummary& target : c.targets) {
+    double set_aside = 0;
+    for (const auto& [reason, count] : target.set_aside) {
+      set_aside += count;
+      reasons += "set aside: " + target.name + ": " + Count(count) + " points " + reason + "\n";
+    }
+    table.Add({target.name, Count(target.points), Count(target.missing), Count(set_aside),
+               Significant(target.rms, 4)});
+  }
+  return table.Text() + reasons;
+}
+
+bool HasDeclared(const Calibration& c) { return c.budget.size() > 1; }
+
+}  // namespace
+
+std::string ToText(const Calibration& c) {
+  std::string text = Parameters(c);
+  if (!HasDeclared(c)) text += "u: repeatability and fit only, not a traceable uncertainty\n";
+  text += "\n" + Targets(c) + "\n";
+  text += "grid search: ";
+  for (size_t k = 0; k < c.grid.at.size(); ++k)
+    text += c.grid.names[k] + " = " + Significant(c.grid.at[k], 6) + " mm, ";
+  text += "S = " + Significant(c.grid.S, 4) + " mm (step " + Significant(c.grid.step, 2) + " mm, " +
+          Count(c.grid.nodes) + " nodes)\n";
+  text += "refinement: " + c.residual + " residual, " + std::to_string(c.iterations) + " iterations, " +
+          Significant(c.seconds * 1000, 3) + " ms; sigma = " + Significant(c.sigma, 4) + " mm, within profiles " +
+          Significant(c.lack_of_fit.pure_error_sigma, 4) + " mm\n";
+  if (c.lack_of_fit.dof1 > 0)
+    text += "lack of fit: F = " + Significant(c.lack_of_fit.F, 4) + " (" + Count(c.lack_of_fit.dof1) + ", " +
+            Count(c.lack_of_fit.dof2) + " degrees of freedom, p = " + Significant(c.lack_of_fit.p, 2) + ")\n";
+  if (c.condition > 0) {
+    text += "condition: " + Significant(c.condition, 3) + "; least determined direction:";
+    for (const auto& [name, component] : c.weakest) text += " " + name + " " + Significant(component, 2);
+    text += "\n";
+  }
+  text += "\n";
+  for (const std::string& warning : c.warnings) text += "warning: " + warning + "\n";
+  for (const std::string& reason : c.unreliable) text += "unreliable: " + reason + "\n";
+  text += std::string("status: ") + (c.ok() ? "ok" : "unreliable") + "\n";
+  return text;
+}
+
+std::string ToText(const Comparison& comparison) {
+  std::vector<std::string> header = {"method"};
+  for (size_t k = 0; k < comparison.parameters.size(); ++k)
+    header.push_back(comparison.parameters[k] + (comparison.is_angle[k] ? "/mrad" : "/mm"));
+  for (const char* column :
+       {"S/um", "rms/um", "held out/um", "u(M)/um", "u(N)/um", "step/√12/um", "ΔM/u", "ΔN/u", "nodes, iter.", "s"})
+    header.push_back(column);
+  TextTable table(header);
+  std::string notes;
+  const ComparisonRow& reference = comparison.rows.back();
+  const auto um = [](double mm) { return Significant(mm * 1000, 3); };
+  for (const ComparisonRow& row : comparison.rows) {
+    std::vector<std::string> cells = {row.method};
+    for (size_t k = 0; k < row.values.size(); ++k)
+      cells.push_back(comparison.is_angle[k] ? Significant(row.values[k] * 1000, 3)
+                                             : Concise(row.values[k], row.u[k].value_or(0)));
+    cells.push_back(um(row.S));
+    cells.push_back(um(row.rms));
+    cells.push_back(row.held_out_rms ? um(*row.held_out_rms) : "-");
+    for (const size_t k : {0, 1}) cells.push_back(row.u[k] ? um(*row.u[k]) : "-");
+    cells.push_back(row.quantisation ? um(*row.quantisation) : "-");
+    for (const size_t k : {0, 1})
+      cells.push_back(reference.u[k] ? Significant((row.values[k] - reference.values[k]) / *reference.u[k], 3) : "-");
+    cells.push_back(Count(row.effort));
+    cells.push_back(Significant(row.seconds, 2));
+    table.Add(cells);
+    if (!row.note.empty()) notes += row.method + ": " + row.note + "\n";
+  }
+  return table.Text() + notes;
+}
+
+}  // namespace scancal

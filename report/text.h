@@ -1,0 +1,12 @@
+// Results as text for the terminal.
+#pragma once
+#include <string>
+#include "solver/calibration.h"
+#include "solver/comparison.h"
+
+namespace scancal {
+
+std::string ToText(const Calibration& calibration);
+std::string ToText(const Comparison& comparison);
+
+}  // namespace scancal

@@ -1,0 +1,62 @@
+#include "report/text_table.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+namespace scancal {
+namespace {
+
+// Columns on a terminal: bytes that continue a UTF-8 character take none.
+size_t Width(const std::string& text) {
+  return static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+std::string Fixed(double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); }
+
+}  // namespace
+
+TextTable::TextTable(std::vector<std::string> header) { rows_.push_back(std::move(header)); }
+
+void TextTable::Add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+
+std::string TextTable::Text() const {
+  std::vector<size_t> widths(rows_.front().size(), 0);
+  for (const auto& row : rows_)
+    for (size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], Width(row[c]));
+  std::string text;
+  for (size_t r = 0; r < rows_.size(); ++r) {
+    std::string line;
+    for (size_t c = 0; c < rows_[r].size(); ++c) {
+      const std::string blank(widths[c] - Width(rows_[r][c]), ' ');
+      line += (c ? "  " : "") + (c ? blank + rows_[r][c] : rows_[r][c] + blank);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+    if (r > 0) continue;
+    size_t all = 2 * (widths.size() - 1);
+    for (const size_t width : widths) all += width;
+    text += std::string(all, '-') + "\n";
+  }
+  return text;
+}
+
+std::string Count(double number) { return std::isfinite(number) ? Fixed(number, 0) : "infinite"; }
+
+std::string Significant(double value, int digits) {
+  if (!std::isfinite(value)) return std::isnan(value) ? "-" : "infinite";
+  const double size = std::abs(value);
+  if (size != 0 && (size < 1e-4 || size >= 1e6)) return fmt::format("{:.{}e}", value, digits - 1);
+  const int before = size == 0 ? 1 : static_cast<int>(std::floor(std::log10(size))) + 1;
+  return Fixed(value, std::max(0, digits - before));
+}
+
+std::string Concise(double value, double u) {
+  if (!std::isfinite(u) || !(u > 0)) return Significant(value, 6);
+  // Two digits of u; 0.0996 rounds to 0.10, which shifts the last place by one.
+  int last = static_cast<int>(std::floor(std::log10(u))) - 1;
+  if (std::round(u / std::pow(10, last)) >= 100) ++last;
+  if (last >= 0) return Fixed(value, 0) + "(" + Fixed(u, 0) + ")";
+  return Fixed(value, -last) + "(" + Fixed(u / std::pow(10, last), 0) + ")";
+}
+
+}  // namespace scancal

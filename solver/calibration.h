@@ -1,0 +1,84 @@
+// The result as a plain value. Lengths mm, angles rad, whatever the input used.
+#pragma once
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+#include "solver/problem.h"
+
+namespace scancal {
+
+struct Parameter {
+  std::string name;
+  Unit unit = Unit::kMm;
+  Role role = Role::kHold;
+  double value = 0;
+  // Standard uncertainties; 0 for what is held. u is the headline: clustered by view, and what was considered.
+  double u = 0, u_naive = 0, u_clustered = 0, u_jackknife = 0;
+  double dof = 0, k = 0, U = 0;  // U = k u: 95 % coverage
+};
+
+struct TargetSummary {
+  std::string name;
+  double points = 0;                                    // used
+  double missing = 0;                                   // no return
+  std::map<std::string, double> set_aside;              // reason -> points
+  std::map<std::string, std::vector<double>> geometry;  // as the model describes it: "normal", "distance"
+  double rms = 0;                                       // of the fit's own residual, mm
+};
+
+struct GridMinimum {
+  std::vector<std::string> names;  // of the search parameters
+  std::vector<double> at;          // where the minimum lies
+  double S = 0;
+  double step = 0;
+  double nodes = 0;
+};
+
+struct BudgetLine {
+  std::string source;
+  Unit unit = Unit::kOne;
+  double u = 0;                      // of the source
+  std::vector<double> sensitivity;   // per estimated parameter
+  std::vector<double> contribution;  // u per estimated parameter
+};
+
+struct LackOfFit {              // of everything within views against everything between them; a warning, no verdict
+  double pure_error_sigma = 0;  // mm
+  double F = 0, dof1 = 0, dof2 = 0, p = 1;  // dof1 = 0: not computed
+};
+
+struct InputFile {
+  std::string file, sha256;
+};
+
+struct Calibration {
+  std::string model, name, residual;
+  std::vector<std::string> warnings;    // worth knowing
+  std::vector<std::string> unreliable;  // why not to rely on it; none: status ok
+  std::vector<Parameter> parameters;    // every system quantity of role estimate or consider, and the model's main ones
+  std::vector<std::string> estimated;   // the order of the covariance
+  Eigen::MatrixXd covariance;           // of the headline
+  GridMinimum grid;
+  std::vector<TargetSummary> targets;
+  double sigma = 0;  // rms residual by degrees of freedom, mm
+  LackOfFit lack_of_fit;
+  double condition = 0;
+  std::map<std::string, double> weakest;  // components of the least determined direction
+  std::vector<BudgetLine> budget;
+  std::vector<std::vector<double>> jackknife;  // per target: the estimated parameters without it
+  int iterations = 0;
+  bool converged = false;
+  double seconds = 0;
+  std::vector<InputFile> inputs;
+  std::string command, version;
+
+  bool ok() const { return unreliable.empty(); }
+  const Parameter* Find(const std::string& parameter) const {
+    for (const Parameter& each : parameters)
+      if (each.name == parameter) return &each;
+    return nullptr;
+  }
+};
+
+}  // namespace scancal

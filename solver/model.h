@@ -1,0 +1,116 @@
+// The contract of a model, and the only template of the solver: MakeProblem.
+#pragma once
+#include <ceres/jet.h>
+#include <algorithm>
+#include <concepts>
+#include "solver/problem.h"
+
+namespace scancal {
+
+// What a view sees: one number per quantity. Scope decides who else sees the same number; the model need not care.
+template <class T>
+struct Seen {
+  const T* q;
+  const T* point;  // points x count, values of point scope; null: zero
+  int count;
+  const T& operator[](int k) const { return q[k]; }
+  T operator()(int i, int k) const { return point ? q[k] + point[i * count + k] : q[k]; }  // as point i sees it
+};
+
+// A model declares one list of quantities and one residual. Residuals are signed, smooth, pure, and written in the
+// frame where the noise lives.
+template <class M>
+concept ScannerModel = requires(const M m, const typename M::Target t, const typename M::View v, Seen<double> q,
+                                double* r) {
+  { m.quantities() } -> std::convertible_to<const Quantities&>;
+  { t.name } -> std::convertible_to<std::string>;
+  { t.views } -> std::convertible_to<const std::vector<typename M::View>&>;
+  { m.Points(v) } -> std::same_as<int>;
+  { m.Count(v) } -> std::convertible_to<double>;  // observations behind the points
+  { M::kRowsPerPoint } -> std::convertible_to<int>;
+  m.Residual(t, v, q,
+             r);  // template <class T> void Residual(const Target&, const View&, const Seen<T>&, T* rows) const
+};
+
+// Optional: a second, coarser storey of compression (see Target::nodes). No nodes: none for this target.
+template <class M>
+concept HasNodes = ScannerModel<M> && requires(const M m, const typename M::Target t, const typename M::View v) {
+  { m.Nodes(t) } -> std::same_as<std::vector<typename M::View>>;
+  { m.Interpolate(m.Nodes(t), v) } -> std::convertible_to<Eigen::MatrixXd>;  // rows(v) = this * rows(nodes)
+};
+
+// Residuals of some views of one target, differentiated by dual numbers of a fixed width.
+template <ScannerModel M>
+class ModelRows final : public Rows {
+ public:
+  ModelRows(std::shared_ptr<const M> model, std::shared_ptr<const typename M::Target> target,
+            std::vector<typename M::View> views)
+      : model_(std::move(model)), target_(std::move(target)), views_(std::move(views)) {
+    for (const auto& view : views_) {
+      points_ += model_->Points(view);
+      count_ += model_->Count(view);
+    }
+  }
+  int size() const override { return points_ * M::kRowsPerPoint; }
+  int points() const override { return points_; }
+  double count() const override { return count_; }
+
+  void Evaluate(const double* q, const double* point, std::span<const int> seeds, double* r,
+                double* jacobian) const override {
+    const int quantities = static_cast<int>(model_->quantities().size());
+    if (!jacobian) return Call(Seen<double>{q, point, quantities}, r);
+    constexpr int kWidth = 8;
+    using Jet = ceres::Jet<double, kWidth>;
+    std::vector<Jet> x(q, q + quantities), rows(size());
+    for (size_t first = 0; first < seeds.size(); first += kWidth) {
+      const auto now = seeds.subspan(first, std::min<size_t>(kWidth, seeds.size() - first));
+      for (int k = 0; k < std::ssize(now); ++k) x[now[k]].v[k] = 1;
+      Call(Seen<Jet>{x.data(), nullptr, quantities}, rows.data());
+      for (const int k : now) x[k].v.setZero();
+      for (size_t i = 0; i < rows.size(); ++i) {
+        r[i] = rows[i].a;
+        for (int k = 0; k < std::ssize(now); ++k) jacobian[(first + k) * rows.size() + i] = rows[i].v[k];
+      }
+    }
+  }
+
+ private:
+  template <class T>
+  void Call(Seen<T> q, T* r) const {
+    for (const auto& view : views_) {
+      model_->Residual(*target_, view, q, r);
+      r += model_->Points(view) * M::kRowsPerPoint;
+      if (q.point) q.point += model_->Points(view) * q.count;
+    }
+  }
+
+  std::shared_ptr<const M> model_;
+  std::shared_ptr<const typename M::Target> target_;
+  std::vector<typename M::View> views_;
+  int points_ = 0;
+  double count_ = 0;
+};
+
+// The estimation problem of a model and its targets: behind this line nothing is a template. Rows have unit weight.
+template <ScannerModel M>
+Problem MakeProblem(const std::shared_ptr<const M>& model, std::vector<typename M::Target> targets) {
+  Problem problem{model->quantities(), {}, {}};
+  for (auto& each : targets) {
+    const auto shared = std::make_shared<const typename M::Target>(std::move(each));
+    Target& target = problem.targets.emplace_back();
+    target.name = shared->name;
+    for (const auto& view : shared->views)
+      target.views.push_back({std::make_shared<ModelRows<M>>(model, shared, std::vector{view}), {}, {}, {}});
+    if constexpr (HasNodes<M>) {
+      const auto nodes = model->Nodes(*shared);
+      if (nodes.empty()) continue;
+      target.nodes.rows = std::make_shared<ModelRows<M>>(model, shared, nodes);
+      for (const auto& view : shared->views) target.interpolation.push_back(model->Interpolate(nodes, view));
+    }
+  }
+  problem.AddPriors();
+  problem.WeighEqually(1);
+  return problem;
+}
+
+}  // namespace scancal

@@ -1,0 +1,137 @@
+#include "solver/problem.h"
+#include <algorithm>
+#include "solver/triangular_factor.h"
+#include "solver/whiten.h"
+
+namespace scancal {
+namespace {
+
+// A prior is a measurement like any other: the value of one quantity.
+class PriorRow final : public Rows {
+ public:
+  PriorRow(int quantity, double value) : quantity_(quantity), value_(value) {}
+  int size() const override { return 1; }
+  int points() const override { return 1; }
+  double count() const override { return 1; }
+  void Evaluate(const double* q, const double*, std::span<const int> seeds, double* r,
+                double* jacobian) const override {
+    r[0] = q[quantity_] - value_;
+    for (size_t k = 0; jacobian && k < seeds.size(); ++k) jacobian[k] = seeds[k] == quantity_;
+  }
+
+ private:
+  int quantity_;
+  double value_;
+};
+
+void MixNodes(Target* target) {
+  if (!target->nodes.rows) return;
+  TriangularFactor factor(target->nodes.rows->size());
+  for (size_t v = 0; v < target->interpolation.size(); ++v) {
+    const Eigen::MatrixXd& mix = target->views[v].mix;
+    factor.Add(mix.size() ? Eigen::MatrixXd(mix * target->interpolation[v]) : target->interpolation[v]);
+  }
+  target->nodes.mix = factor.R();
+}
+
+}  // namespace
+
+const char* Name(Unit unit) { return unit == Unit::kMm ? "mm" : unit == Unit::kRad ? "rad" : "1"; }
+
+const char* Name(Role role) {
+  return role == Role::kEstimate ? "estimate" : role == Role::kConsider ? "consider" : "hold";
+}
+
+int Find(const Quantities& quantities, const std::string& name) {
+  const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const auto& q) { return q.name == name; });
+  return found == quantities.end() ? -1 : static_cast<int>(found - quantities.begin());
+}
+
+void Block::Evaluate(const double* q, std::span<const int> seeds, Eigen::VectorXd* r, Eigen::MatrixXd* jacobian) const {
+  r->resize(rows->size());
+  if (jacobian) jacobian->resize(rows->size(), std::ssize(seeds));
+  rows->Evaluate(q, nullptr, seeds, r->data(), jacobian && !seeds.empty() ? jacobian->data() : nullptr);
+  if (mix.size()) {
+    *r = mix * *r;
+    if (jacobian) *jacobian = mix * *jacobian;
+  }
+  if (offset.size()) *r += offset;
+}
+
+void Problem::AddPriors() {
+  for (int k : With({Scope::kSystem, Scope::kTarget}, Role::kEstimate)) {
+    const Quantity& q = quantities[k];
+    if (q.u <= 0) continue;
+    const Block prior{std::make_shared<PriorRow>(k, q.value),
+                      Whitening(Eigen::MatrixXd::Constant(1, 1, q.u * q.u)),
+                      {},
+                      "prior of " + q.Source()};
+    if (q.scope == Scope::kSystem) {
+      priors.push_back(prior);
+    } else {
+      for (Target& target : targets) target.views.push_back(prior);
+    }
+  }
+}
+
+void Problem::WeighEqually(double sigma) {
+  for (Target& target : targets) {
+    for (Block& view : target.views) {
+      const int n = view.rows->size();
+      if (view.prior.empty()) view.mix = Whitening(sigma * sigma * Eigen::MatrixXd::Identity(n, n));
+    }
+    MixNodes(&target);
+  }
+}
+
+std::vector<int> Problem::With(std::initializer_list<Scope> scopes, Role role) const {
+  std::vector<int> found;
+  for (int k = 0; k < std::ssize(quantities); ++k) {
+    const Quantity& q = quantities[k];
+    if (q.role == role && std::find(scopes.begin(), scopes.end(), q.scope) != scopes.end()) found.push_back(k);
+  }
+  return found;
+}
+
+bool Problem::NodesSuffice() const {
+  // A target's own prior is a view that no node stands for.
+  const bool stored = std::all_of(targets.begin(), targets.end(), [](const Target& t) {
+    return t.nodes.rows && t.views.size() == t.interpolation.size();
+  });
+  return stored && std::all_of(quantities.begin(), quantities.end(), [](const Quantity& q) {
+           return q.in_nodes || (q.role != Role::kEstimate && q.value == 0) || q.scope == Scope::kView ||
+                  q.scope == Scope::kPoint;
+         });
+}
+
+double Problem::Count() const {
+  double count = static_cast<double>(priors.size());
+  for (const Target& target : targets)
+    for (const Block& view : target.views) count += view.rows->count();
+  return count;
+}
+
+Estimate NominalStart(const Problem& problem) {
+  const auto values = [&](Scope scope) {
+    const std::vector<int> estimated = problem.With({scope}, Role::kEstimate);
+    Eigen::VectorXd out(std::ssize(estimated));
+    for (int k = 0; k < out.size(); ++k) out[k] = problem.quantities[estimated[k]].value;
+    return out;
+  };
+  return {values(Scope::kSystem), std::vector<Eigen::VectorXd>(problem.targets.size(), values(Scope::kTarget))};
+}
+
+std::vector<double> Values(const Problem& problem, const Estimate& estimate, size_t target) {
+  std::vector<double> q(problem.quantities.size());
+  Eigen::Index of_system = 0, of_target = 0;
+  for (size_t k = 0; k < q.size(); ++k) {
+    const Quantity& quantity = problem.quantities[k];
+    q[k] = quantity.value;
+    if (quantity.role != Role::kEstimate) continue;
+    if (quantity.scope == Scope::kSystem) q[k] = estimate.system[of_system++];
+    if (quantity.scope == Scope::kTarget) q[k] = estimate.targets[target][of_target++];
+  }
+  return q;
+}
+
+}  // namespace scancal

@@ -1,0 +1,101 @@
+// What the solver sees: quantities with a name, a unit and a scope, and rows of residuals that depend on them. No
+// scanner.
+#pragma once
+#include <Eigen/Core>
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace scancal {
+
+enum class Unit { kMm, kRad, kOne };
+enum class Scope {
+  kSystem,
+  kTarget,
+  kView,
+  kPoint
+};  // who shares one value: all | a target | a view (profile, pose) | nobody
+enum class Role { kEstimate, kConsider, kHold };
+
+const char* Name(Unit unit);  // "mm", "rad", "1"
+const char* Name(Role role);  // "estimate", "consider", "hold"
+
+// A number that the residuals depend on. The model declares name, unit and scope once; role, value and u come from the
+// user.
+struct Quantity {
+  std::string name;
+  Unit unit = Unit::kOne;
+  Scope scope = Scope::kSystem;
+  Role role = Role::kHold;
+  double value = 0;       // nominal; mean of the prior
+  double u = 0;           // estimate: standard uncertainty of the prior (0: none); consider: of the quantity
+  bool in_nodes = false;  // the node storey is exact for it (see Target)
+  std::string source;     // its line in the budget; empty: its name
+  const std::string& Source() const { return source.empty() ? name : source; }
+};
+using Quantities = std::vector<Quantity>;
+
+int Find(const Quantities& quantities, const std::string& name);  // index, or -1
+
+// Some rows of residuals r(q) of one target: those of one view, or of a few nodes that stand for all its views.
+class Rows {
+ public:
+  virtual ~Rows() = default;
+  virtual int size() const = 0;
+  virtual int points() const = 0;    // size() / points() rows belong to one point
+  virtual double count() const = 0;  // scalar observations behind them: degrees of freedom always count these
+  // q: one value per quantity, quantities().size() long. point: values of point scope, points() x quantities row-major,
+  // added to q; null for zero. r: size(). jacobian: null, or size() x seeds, column-major: dr/dq of the seeds, where
+  // the column of a quantity of point scope is the derivative of each row by its own point's value.
+  virtual void Evaluate(const double* q, const double* point, std::span<const int> seeds, double* r,
+                        double* jacobian) const = 0;
+};
+
+// residual = mix * r(q) + offset. An empty mix is the identity, an empty offset zero.
+struct Block {
+  std::shared_ptr<const Rows> rows;
+  Eigen::MatrixXd mix;
+  Eigen::VectorXd offset;
+  std::string prior;  // not empty: a prior of that name, with unit noise of its own
+  int size() const { return static_cast<int>(mix.size() ? mix.rows() : rows->size()); }
+  void Evaluate(const double* q, std::span<const int> seeds, Eigen::VectorXd* r, Eigen::MatrixXd* jacobian) const;
+};
+
+// The views of one target share its quantities. Where residuals are linear in a few known features, all views also
+// equal a mix of a few nodes: rows(view) = interpolation[view] * rows(nodes), hence sum |rows(view)|^2 = |nodes.mix
+// rows(nodes)|^2.
+struct Target {
+  std::string name;
+  std::vector<Block> views;                    // profile storey; the priors of the target's own quantities come last
+  Block nodes;                                 // node storey; rows == nullptr if the model has none
+  std::vector<Eigen::MatrixXd> interpolation;  // per view that is no prior
+};
+
+// Owns all it refers to.
+struct Problem {
+  Quantities quantities;
+  std::vector<Target> targets;
+  std::vector<Block> priors;  // of system quantities
+
+  void AddPriors();  // one row (q - value) / u for every estimated quantity with a prior; once the targets are in place
+  // All data rows divided by sigma, their common standard deviation; priors keep their own unit noise.
+  void WeighEqually(double sigma);
+  std::vector<int> With(std::initializer_list<Scope> scopes, Role role) const;
+  bool NodesSuffice()
+      const;             // every target has nodes, and they are exact for every quantity that is estimated or not zero
+  double Count() const;  // observations and priors
+};
+
+// Values of the estimated quantities, in the order of Problem::quantities.
+struct Estimate {
+  Eigen::VectorXd system;
+  std::vector<Eigen::VectorXd> targets;  // per target its own
+};
+
+Estimate NominalStart(const Problem& problem);  // every quantity at its value
+// One value per quantity as target t sees it: nominal, with the estimates in place.
+std::vector<double> Values(const Problem& problem, const Estimate& estimate, size_t target);
+
+}  // namespace scancal

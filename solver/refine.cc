@@ -1,0 +1,150 @@
+#include "solver/refine.h"
+#include <ceres/ceres.h>
+#include <glog/logging.h>
+
+namespace scancal {
+namespace {
+
+constexpr int kPolishSteps = 10;
+
+// All rows of a target as Ceres sees them: a function of the system's estimated quantities and the target's own.
+class BlocksCost final : public ceres::CostFunction {
+ public:
+  BlocksCost(const Problem& problem, std::span<const Block> blocks, const std::vector<int>& system,
+             const std::vector<int>& own)
+      : blocks_(blocks), system_(std::ssize(system)), own_(std::ssize(own)), seeds_(system) {
+    seeds_.insert(seeds_.end(), own.begin(), own.end());
+    for (const Quantity& quantity : problem.quantities) values_.push_back(quantity.value);
+    int rows = 0;
+    for (const Block& block : blocks) rows += block.size();
+    set_num_residuals(rows);
+    for (const Eigen::Index n : {system_, own_})
+      if (n) mutable_parameter_block_sizes()->push_back(static_cast<int>(n));
+  }
+
+  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
+    std::vector<double> q = values_;
+    for (Eigen::Index k = 0; k < system_; ++k) q[seeds_[k]] = x[0][k];
+    for (Eigen::Index k = 0; k < own_; ++k) q[seeds_[system_ + k]] = x[system_ ? 1 : 0][k];
+    Eigen::VectorXd r;
+    Eigen::MatrixXd jacobian;
+    Stack(blocks_, q, seeds_, &r, jacobians ? &jacobian : nullptr);
+    Eigen::VectorXd::Map(residuals, r.size()) = r;
+    for (size_t b = 0; jacobians && b < parameter_block_sizes().size(); ++b) {
+      if (!jacobians[b]) continue;
+      const bool of_system = system_ && b == 0;
+      using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+      if (of_system) {
+        RowMajor::Map(jacobians[b], r.size(), system_) = jacobian.leftCols(system_);
+      } else {
+        RowMajor::Map(jacobians[b], r.size(), own_) = jacobian.rightCols(own_);
+      }
+    }
+    return r.allFinite();
+  }
+
+ private:
+  std::span<const Block> blocks_;
+  Eigen::Index system_, own_;
+  std::vector<int> seeds_;
+  std::vector<double> values_;
+};
+
+ceres::Solver::Summary SolveByCeres(const Problem& problem, Storey storey, int max_iterations, Estimate* x) {
+  const std::vector<int> system = problem.With({Scope::kSystem}, Role::kEstimate);
+  const std::vector<int> own = problem.With({Scope::kTarget}, Role::kEstimate);
+  ceres::Problem ceres_problem;
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  for (size_t t = 0; t < problem.targets.size(); ++t) {
+    const Target& target = problem.targets[t];
+    const std::span<const Block> blocks =
+        storey == Storey::kNodes ? std::span<const Block>(&target.nodes, 1) : std::span<const Block>(target.views);
+    std::vector<double*> parameters;
+    if (!system.empty()) parameters.push_back(x->system.data());
+    if (!own.empty()) parameters.push_back(x->targets[t].data());
+    if (parameters.empty() || blocks.empty()) continue;
+    ceres_problem.AddResidualBlock(new BlocksCost(problem, blocks, system, own), nullptr, parameters);
+    if (!own.empty()) ordering->AddElementToGroup(x->targets[t].data(), 0);
+  }
+  if (!system.empty()) {
+    if (!problem.priors.empty())
+      ceres_problem.AddResidualBlock(new BlocksCost(problem, problem.priors, system, {}), nullptr, x->system.data());
+    ordering->AddElementToGroup(x->system.data(), own.empty() ? 0 : 1);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = system.empty() || own.empty() ? ceres::DENSE_QR : ceres::DENSE_SCHUR;
+  options.linear_solver_ordering = ordering;
+  options.max_num_iterations = max_iterations;
+  options.function_tolerance = options.parameter_tolerance = 1e-12;
+  options.gradient_tolerance = 1e-14;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &ceres_problem, &summary);
+  return summary;
+}
+
+void Add(const Estimate& step, Estimate* x) {
+  x->system += step.system;
+  for (size_t t = 0; t < x->targets.size(); ++t) x->targets[t] += step.targets[t];
+}
+
+bool AllFinite(const Estimate& x) {
+  return x.system.allFinite() &&
+         std::all_of(x.targets.begin(), x.targets.end(), [](const auto& own) { return own.allFinite(); });
+}
+
+// Largest component of the step against 1e-12 of the quantity's own size (of one unit, where it is smaller).
+bool IsTiny(const Estimate& step, const Estimate& x) {
+  const auto tiny = [](const Eigen::VectorXd& d, const Eigen::VectorXd& of) {
+    return (d.array().abs() <= 1e-12 * of.array().abs().max(1.0)).all();
+  };
+  if (step.system.size()) return tiny(step.system, x.system);  // the targets' own follow exactly
+  for (size_t t = 0; t < x.targets.size(); ++t)
+    if (!tiny(step.targets[t], x.targets[t])) return false;
+  return true;
+}
+
+}  // namespace
+
+Storey FitStorey(const Problem& problem) { return problem.NodesSuffice() ? Storey::kNodes : Storey::kViews; }
+
+Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& options) {
+  CHECK(!problem.targets.empty()) << "a problem needs a target";
+  const Storey storey = FitStorey(problem);
+  Fit fit;
+  fit.estimate = start;
+  const auto summary = SolveByCeres(problem, storey, options.max_iterations, &fit.estimate);
+  fit.iterations = static_cast<int>(summary.iterations.size());
+  if (!summary.IsSolutionUsable()) {
+    fit.message = summary.message;
+    return fit;
+  }
+  Linearization linear = Linearize(problem, fit.estimate, storey);
+  for (int k = 0; k < kPolishSteps; ++k) {
+    const Estimate step = GaussNewtonStep(linear);
+    if (!AllFinite(step)) {
+      fit.message = "the equations are singular";
+      break;
+    }
+    Estimate next = fit.estimate;
+    Add(step, &next);
+    Linearization there = Linearize(problem, next, storey);
+    ++fit.iterations;
+    // In units of the uncertainty, |factor step| is the length of the step times the noise of one row.
+    const double noise = std::sqrt(linear.cost / std::max(1.0, problem.Count()));
+    const bool negligible = (linear.factor * step.system).norm() <= 1e-6 * noise;
+    const bool worse = !(there.cost <= linear.cost * (1 + 1e-9) + 1e-300);
+    const bool tiny = IsTiny(step, next);
+    fit.converged = tiny || (negligible && step.system.size() > 0);
+    if (worse) break;
+    fit.estimate = std::move(next);
+    linear = std::move(there);
+    if (tiny) break;
+  }
+  fit.cost = linear.cost;
+  if (!fit.converged && fit.message.empty())
+    fit.message = "no convergence after " + std::to_string(fit.iterations) + " iterations (" + summary.message + ")";
+  return fit;
+}
+
+}  // namespace scancal

@@ -1,0 +1,29 @@
+// Joint refinement: Ceres' Levenberg-Marquardt to the neighbourhood, Gauss-Newton by QR to the last digits.
+#pragma once
+#include <string>
+#include "solver/linearize.h"
+#include "solver/problem.h"
+
+namespace scancal {
+
+struct RefineOptions {
+  int max_iterations = 100;
+};
+
+struct Fit {
+  Estimate estimate;
+  double cost = 0;         // sum of squares of all weighted residuals, priors among them
+  int iterations = 0;      // Ceres' and the polishing ones
+  bool converged = false;  // the last step is below 1e-12 of every system quantity, or below 1e-6 of its uncertainty
+  std::string message;     // why not
+};
+
+// Which storey carries the fit: the nodes where they are exact, else the views.
+Storey FitStorey(const Problem& problem);
+
+// Minimises the sum of squares of all rows and priors over the estimated quantities of system and target scope. One
+// residual block a target; the targets' own quantities are eliminated (Schur). Ceres' normal equations stop at about
+// 1e-8 of the uncertainty, so Gauss-Newton steps by QR finish. One thread: the same digits everywhere.
+Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& options = {});
+
+}  // namespace scancal

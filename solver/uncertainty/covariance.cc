@@ -1,0 +1,60 @@
+#include "solver/uncertainty/covariance.h"
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace scancal {
+namespace {
+
+double QuantityCount(const Problem& problem) {
+  const auto system = problem.With({Scope::kSystem}, Role::kEstimate).size();
+  const auto own = problem.With({Scope::kTarget}, Role::kEstimate).size();
+  return static_cast<double>(system + own * problem.targets.size());
+}
+
+// (I - H)^-1/2 r of one cluster; a direction that the cluster alone determines (leverage 1) has no residual to correct.
+Eigen::VectorXd Corrected(const Eigen::MatrixXd& hat, const Eigen::VectorXd& r) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd::Identity(hat.rows(), hat.cols()) - hat);
+  const Eigen::ArrayXd left = eigen.eigenvalues().array();
+  const Eigen::ArrayXd scale = (left > 1e-8).select(left.max(1e-8).rsqrt(), 0.0);
+  return eigen.eigenvectors() * (scale * (eigen.eigenvectors().transpose() * r).array()).matrix();
+}
+
+}  // namespace
+
+Eigen::MatrixXd InverseInformation(const Linearization& linear) {
+  const auto n = linear.factor.cols();
+  const Eigen::MatrixXd inverse = linear.factor.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
+  return inverse * inverse.transpose();
+}
+
+Covariance NaiveCovariance(const Problem& problem, const Linearization& linear) {
+  const double dof = problem.Count() - QuantityCount(problem);
+  return {InverseInformation(linear) * (dof > 0 ? linear.cost / dof : std::numeric_limits<double>::infinity()), dof};
+}
+
+Covariance ClusteredCovariance(const Problem& problem, const Linearization& linear) {
+  const Eigen::MatrixXd inverse = InverseInformation(linear);
+  Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(inverse.rows(), inverse.cols());
+  double clusters = 0;
+  for (size_t t = 0; t < problem.targets.size(); ++t) {
+    const LinearTarget& target = linear.targets[t];
+    for (size_t v = 0; v < problem.targets[t].views.size(); ++v) {
+      const Block& view = problem.targets[t].views[v];
+      const auto j = target.system_left.middleRows(target.first[v], view.size());
+      if (!view.prior.empty()) {
+        meat += j.transpose() * j;
+        continue;
+      }
+      const auto q = target.q.middleRows(target.first[v], view.size());
+      const Eigen::MatrixXd hat = q * q.transpose() + j * inverse * j.transpose();
+      const Eigen::VectorXd score = j.transpose() * Corrected(hat, target.r.segment(target.first[v], view.size()));
+      meat += score * score.transpose();
+      ++clusters;
+    }
+  }
+  const Eigen::MatrixXd& priors = linear.targets.back().system_left;
+  if (priors.size()) meat += priors.transpose() * priors;
+  return {inverse * meat * inverse, std::max(0.0, clusters - QuantityCount(problem))};
+}
+
+}  // namespace scancal

@@ -1,0 +1,17 @@
+#include "solver/uncertainty/coverage.h"
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <limits>
+
+namespace scancal {
+
+double CoverageFactor(double coverage, double dof) {
+  if (!(dof >= 1)) return std::numeric_limits<double>::infinity();
+  return boost::math::quantile(boost::math::students_t(dof), 0.5 + 0.5 * coverage);
+}
+
+double FUpperTail(double f, double dof1, double dof2) {
+  return boost::math::cdf(boost::math::complement(boost::math::fisher_f(dof1, dof2), f));
+}
+
+}  // namespace scancal

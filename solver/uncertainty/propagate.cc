@@ -1,0 +1,103 @@
+#include "solver/uncertainty/propagate.h"
+#include <Eigen/QR>
+#include <map>
+#include "solver/uncertainty/covariance.h"
+
+namespace scancal {
+namespace {
+
+// Sums (J~' b u)(J~' b u)' per source; H^-1 on both sides turns it into K V K'.
+class Meat {
+ public:
+  explicit Meat(Eigen::Index system) : system_(system) {}
+  void Add(const std::string& source, Scope scope, const Eigen::MatrixXd& scores) {
+    auto [it, fresh] = lines_.try_emplace(source, scope, Eigen::MatrixXd::Zero(system_, system_));
+    it->second.first = std::min(it->second.first, scope);
+    it->second.second += scores * scores.transpose();
+    if (fresh) order_.push_back(source);
+  }
+  Budget Between(const Eigen::MatrixXd& h_inverse) const {
+    Budget budget;
+    for (const std::string& source : order_) {
+      const auto& [scope, meat] = lines_.at(source);
+      budget.lines.push_back({source, scope, h_inverse * meat * h_inverse, {}});
+    }
+    return budget;
+  }
+
+ private:
+  Eigen::Index system_;
+  std::map<std::string, std::pair<Scope, Eigen::MatrixXd>> lines_;
+  std::vector<std::string> order_;
+};
+
+// Scores of one view's instances of one quantity: weighted = J~_v' mix (system x rows), b = dr/dq (rows).
+Eigen::MatrixXd Scores(const Eigen::MatrixXd& weighted, const Eigen::VectorXd& b, int points, Scope scope) {
+  if (scope != Scope::kPoint) return weighted * b;
+  const Eigen::Index per_point = b.size() / points;
+  Eigen::MatrixXd scores(weighted.rows(), points);
+  for (int i = 0; i < points; ++i)
+    scores.col(i) = weighted.middleCols(i * per_point, per_point) * b.segment(i * per_point, per_point);
+  return scores;
+}
+
+}  // namespace
+
+Eigen::MatrixXd Budget::Total() const {
+  Eigen::MatrixXd total;
+  for (const Contribution& line : lines)
+    total = total.size() ? Eigen::MatrixXd(total + line.covariance) : line.covariance;
+  return total;
+}
+
+Budget Propagate(const Problem& problem, const Estimate& fit, const Linearization& linear) {
+  const std::vector<int> influences =
+      problem.With({Scope::kSystem, Scope::kTarget, Scope::kView, Scope::kPoint}, Role::kConsider);
+  const Eigen::Index system = linear.factor.cols(), n = std::ssize(influences);
+  const auto influence = [&](Eigen::Index k) -> const Quantity& { return problem.quantities[influences[k]]; };
+  Meat meat(system);
+  Eigen::MatrixXd of_system = Eigen::MatrixXd::Zero(system, n);  // scores of what the whole system shares
+  for (size_t t = 0; t < problem.targets.size(); ++t) {
+    const LinearTarget& target = linear.targets[t];
+    const std::vector<double> q = Values(problem, fit, t);
+    Eigen::MatrixXd of_target = Eigen::MatrixXd::Zero(system, n);
+    for (size_t v = 0; v < problem.targets[t].views.size(); ++v) {
+      const Block& view = problem.targets[t].views[v];
+      const Eigen::MatrixXd left = target.system_left.middleRows(target.first[v], view.size()).transpose();
+      if (!view.prior.empty()) {
+        meat.Add(view.prior, Scope::kTarget, left);
+        continue;
+      }
+      const Eigen::MatrixXd weighted = view.mix.size() ? Eigen::MatrixXd(left * view.mix) : left;
+      Eigen::VectorXd r;
+      Eigen::MatrixXd b;
+      Block{view.rows, {}, {}, {}}.Evaluate(q.data(), influences, &r, &b);
+      for (Eigen::Index k = 0; k < n; ++k) {
+        const Quantity& quantity = influence(k);
+        const Eigen::MatrixXd scores = Scores(weighted, b.col(k) * quantity.u, view.rows->points(), quantity.scope);
+        if (quantity.scope == Scope::kView || quantity.scope == Scope::kPoint) {
+          meat.Add(quantity.Source(), quantity.scope, scores);
+        } else {
+          of_target.col(k) += scores;
+        }
+      }
+    }
+    for (Eigen::Index k = 0; k < n; ++k)
+      if (influence(k).scope == Scope::kTarget) meat.Add(influence(k).Source(), Scope::kTarget, of_target.col(k));
+    of_system += of_target;
+  }
+  for (Eigen::Index k = 0; k < n; ++k)
+    if (influence(k).scope == Scope::kSystem) meat.Add(influence(k).Source(), Scope::kSystem, of_system.col(k));
+  for (size_t p = 0; p < problem.priors.size(); ++p)
+    meat.Add(problem.priors[p].prior, Scope::kSystem,
+             linear.targets.back().system_left.row(static_cast<Eigen::Index>(p)).transpose());
+  const Eigen::MatrixXd h_inverse = InverseInformation(linear);
+  Budget budget = meat.Between(h_inverse);
+  for (Eigen::Index k = 0; k < n; ++k)
+    for (Contribution& line : budget.lines)
+      if (influence(k).scope == Scope::kSystem && influence(k).u > 0 && line.source == influence(k).Source())
+        line.sensitivity = -h_inverse * of_system.col(k) / influence(k).u;
+  return budget;
+}
+
+}  // namespace scancal

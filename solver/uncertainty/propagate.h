@@ -1,0 +1,28 @@
+// K V K': what every considered quantity contributes to the covariance of the estimate.
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+#include "solver/linearize.h"
+
+namespace scancal {
+
+struct Contribution {
+  std::string source;
+  Scope scope = Scope::kSystem;  // the widest of its quantities
+  Eigen::MatrixXd covariance;    // system x system
+  Eigen::VectorXd
+      sensitivity;  // d parameter / d quantity, for a source with one value for the whole system; else empty
+};
+
+struct Budget {
+  std::vector<Contribution> lines;  // priors are lines of their own
+  Eigen::MatrixXd Total() const;
+};
+
+// With gain K = (J'J)^-1 J' (J whitened), each instance of a quantity of uncertainty u adds (K b)(K b)' u^2, b = dr/dq
+// (GUM 5.1.2 for correlated inputs, JCGM 102 6.2). Instances: one for the system, one per target, per view, per point,
+// as the scope says. Priors contribute their own unit noise. linear: of the views, at the fit.
+Budget Propagate(const Problem& problem, const Estimate& fit, const Linearization& linear);
+
+}  // namespace scancal

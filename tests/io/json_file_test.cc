@@ -1,0 +1,76 @@
+#include "io/json_file.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <cmath>
+#include <limits>
+#include "tests/io/temporary_folder.h"
+
+namespace scancal {
+namespace {
+
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class JsonFileTest : public ::testing::Test {
+ protected:
+  std::string ReadError(std::string_view contents) {
+    const auto json = ReadJson(folder_.Write("old result.json", contents));
+    return json.ok() ? "" : json.error().message;
+  }
+  std::string WriteError(const Json& json) {
+    const auto result = WriteJson(folder_.path() / "result.json", json);
+    return result.ok() ? "" : result.error().message;
+  }
+  std::string Place(const std::string& place) { return (folder_.path() / "old result.json").string() + place; }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(JsonFileTest, WritesKeysInTheirOrderAndReadsThemBack) {
+  Json json = {{"scancal", 1}, {"model", "t\xC3\xBCr"}, {"a", {0.1, 1e-300, 3}}};
+  ASSERT_THAT(WriteError(json), IsEmpty());
+  EXPECT_EQ(folder_.Read("result.json"),
+            "{\n  \"scancal\": 1,\n  \"model\": \"t\xC3\xBCr\",\n  \"a\": [\n    0.1,\n    1e-300,\n    3\n  ]\n}\n");
+  const auto read = ReadJson(folder_.path() / "result.json");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(*read, json);
+}
+
+TEST_F(JsonFileTest, DoublesSurviveBitForBit) {
+  const double value = 0.1 + 0.2;
+  ASSERT_THAT(WriteError({{"x", value}}), IsEmpty());
+  EXPECT_EQ((*ReadJson(folder_.path() / "result.json"))["x"].get<double>(), value);
+}
+
+TEST_F(JsonFileTest, NanAndInfAreRefusedByTheirKey) {
+  Json json;
+  json["parameters"] = {{{"u", 1}}, {{"u", std::nan("")}}};
+  EXPECT_EQ(WriteError(json), (folder_.path() / "result.json").string() +
+                                  ": not written: parameters[1].u is nan, which JSON cannot hold");
+  EXPECT_THAT(WriteError({{"a", {{"b", -std::numeric_limits<double>::infinity()}}}}), HasSubstr("a.b is -inf"));
+  EXPECT_THAT(folder_.Names(), IsEmpty());
+}
+
+TEST_F(JsonFileTest, TextThatIsNotUtf8IsRefusedByItsKey) {
+  EXPECT_THAT(WriteError({{"inputs", {{{"file", "Gl\xE4ser"}}}}}), HasSubstr("inputs[0].file is not UTF-8 text"));
+  EXPECT_THAT(WriteError({{"a", {{"\xE4", 1}}}}), HasSubstr("a has a key that is not UTF-8"));
+}
+
+TEST_F(JsonFileTest, SyntaxErrorsHaveAPlace) {
+  EXPECT_THAT(ReadError("{\n  \"a\": 1,\n  b: 2}\n"), HasSubstr(Place(":3:3: not JSON: invalid literal")));
+  EXPECT_THAT(ReadError("{\"a\": [1, 2"), HasSubstr(Place(":1:12: not JSON: unexpected end of input")));
+  EXPECT_THAT(ReadError("{\"a\": 1e999}"), HasSubstr(": not JSON: "));
+  EXPECT_THAT(ReadError("{} {}"), HasSubstr(Place(":1:4: not JSON: ")));
+}
+
+TEST_F(JsonFileTest, AByteOrderMarkIsFine) { EXPECT_THAT(ReadError("\xEF\xBB\xBF{}"), IsEmpty()); }
+
+TEST_F(JsonFileTest, EmptyMissingAndFolderAreErrors) {
+  EXPECT_EQ(ReadError(" \n"), Place(": the file is empty, expected JSON"));
+  EXPECT_THAT(ReadJson(folder_.path() / "none.json").error().message, EndsWith("none.json: no such file"));
+  EXPECT_THAT(ReadJson(folder_.path()).error().message, EndsWith(": found a folder, expected a file"));
+}
+
+}  // namespace
+}  // namespace scancal
