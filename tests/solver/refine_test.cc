@@ -1,0 +1,97 @@
+#include "solver/refine.h"
+#include <gtest/gtest.h>
+#include "solver/observability.h"
+#include "solver/uncertainty/jackknife.h"
+#include "tests/solver/line_model.h"
+
+namespace scancal {
+namespace {
+
+Problem Pose(const LineScene& scene, const LineModel& model = {}) {
+  return MakeProblem<LineModel>(std::make_shared<LineModel>(model), scene.Make());
+}
+
+TEST(Refine, RecoversTheTruthFromNoiselessData) {
+  LineScene scene;
+  scene.noise = 0;
+  const Problem problem = Pose(scene);
+  const Fit fit = Refine(problem, NominalStart(problem));
+  EXPECT_TRUE(fit.converged) << fit.message;
+  EXPECT_NEAR(fit.estimate.system[0], 0.3, 1e-13);
+  EXPECT_NEAR(fit.estimate.targets[2][0], 20, 1e-12);
+  EXPECT_LT(fit.cost, 1e-24);
+}
+
+TEST(Refine, CombinesDataAndPriorByTheirUncertainties) {
+  LineModel model;
+  model.quantity(LineModel::kSlope).value = 1;
+  model.quantity(LineModel::kSlope).u = 0.02;
+  LineScene scene;
+  Problem without = Pose(scene), with = Pose(scene, model);
+  without.WeighEqually(scene.noise);
+  with.WeighEqually(scene.noise);
+  const Fit alone = Refine(without, NominalStart(without)), both = Refine(with, NominalStart(with));
+  const double weight = std::pow(Linearize(without, alone.estimate, Storey::kViews).factor(0, 0), 2);
+  const double prior_weight = 1 / (0.02 * 0.02);
+  EXPECT_NEAR(both.estimate.system[0], (weight * alone.estimate.system[0] + prior_weight * 1) / (weight + prior_weight),
+              1e-12);
+}
+
+TEST(Refine, TellsThatItDidNotConverge) {
+  const Problem problem = Pose({});
+  Estimate nowhere = NominalStart(problem);
+  nowhere.system[0] = std::numeric_limits<double>::quiet_NaN();
+  const Fit fit = Refine(problem, nowhere);
+  EXPECT_FALSE(fit.converged);
+  EXPECT_FALSE(fit.message.empty());
+}
+
+TEST(Refine, DoesNotDependOnTheOrderOfTargetsAndViews) {
+  const Problem problem = Pose({});
+  Problem turned = problem;
+  std::reverse(turned.targets.begin(), turned.targets.end());
+  for (Target& target : turned.targets) std::reverse(target.views.begin(), target.views.end());
+  EXPECT_NEAR(Refine(problem, NominalStart(problem)).estimate.system[0],
+              Refine(turned, NominalStart(turned)).estimate.system[0], 1e-14);
+}
+
+TEST(Observability, NamesWhatHasNoEffectOfItsOwn) {
+  LineModel model;
+  model.quantity(LineModel::kCurvature).role = Role::kEstimate;
+  LineScene scene;
+  scene.views = 1;
+  scene.points = 1;  // one point a line: its level absorbs everything
+  const Problem problem = Pose(scene, model);
+  const Observability seen = Observe(problem, Linearize(problem, NominalStart(problem), Storey::kViews));
+  EXPECT_EQ(seen.undetermined, (std::vector<std::string>{"slope", "curvature"}));
+  EXPECT_TRUE(seen.undetermined_targets.empty());
+
+  scene.views = 8;
+  const Problem determined = Pose(scene, model);
+  EXPECT_TRUE(
+      Observe(determined, Linearize(determined, NominalStart(determined), Storey::kViews)).undetermined.empty());
+}
+
+TEST(Jackknife, IsTheSpreadOfTheFitsWithoutOneTarget) {
+  const Problem problem = Pose({});
+  const Jackknife jackknife = LeaveOneTargetOut(problem, Refine(problem, NominalStart(problem)));
+  ASSERT_EQ(jackknife.estimates.rows(), 3);
+  LineScene scene;
+  auto targets = scene.Make();
+  targets.erase(targets.begin() + 1);
+  const Problem rest = MakeProblem<LineModel>(std::make_shared<LineModel>(), targets);
+  EXPECT_NEAR(jackknife.estimates(1, 0), Refine(rest, NominalStart(rest)).estimate.system[0], 1e-13);
+  double mean = jackknife.estimates.col(0).mean(), sum = 0;
+  for (int t = 0; t < 3; ++t) sum += std::pow(jackknife.estimates(t, 0) - mean, 2);
+  EXPECT_NEAR(jackknife.covariance(0, 0), sum * 2 / 3, 1e-15);
+}
+
+TEST(Jackknife, NeedsTwoTargets) {
+  LineScene scene;
+  scene.targets = 1;
+  const Problem problem = Pose(scene);
+  EXPECT_EQ(LeaveOneTargetOut(problem, Refine(problem, NominalStart(problem))).estimates.rows(), 0);
+}
+
+}  // namespace
+}  // namespace scancal
