@@ -12,21 +12,28 @@ namespace {
 
 size_t OneBased(int position) { return static_cast<size_t>(std::max(position, 0)) + 1; }
 
+// What is YAML but not for us. Thrown, the only way to stop yaml-cpp's parser, and caught in ParseYaml.
+struct Complaint {
+  Complaint(const YAML::Mark& mark, std::string sentence)
+      : line(OneBased(mark.line)), column(OneBased(mark.column)), sentence(std::move(sentence)) {}
+  size_t line, column;
+  std::string sentence;
+};
+
 // yaml-cpp's own tree drops the second of two equal keys and the places of keys; its events have both.
-// A complaint leaves as yaml-cpp's exception, the only way to stop its parser, and is caught in ParseYaml.
 class TreeBuilder : public YAML::EventHandler {
  public:
   YamlNode TakeRoot() { return std::move(root_); }
 
   void OnDocumentStart(const YAML::Mark& mark) override {
-    if (++documents_ > 1) throw YAML::ParserException(mark, "found a second document, expected one");
+    if (++documents_ > 1) throw Complaint(mark, "found a second document, expected one");
   }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override {
     Attach(At(mark, YamlNode::Kind::kNothing), mark);
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override {
-    throw YAML::ParserException(mark, "found an alias, expected the value itself");
+    throw Complaint(mark, "found an alias, expected the value itself");
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t /*anchor*/,
                 const std::string& value) override {
@@ -61,7 +68,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void Open(YamlNode node, const YAML::Mark& mark) {
-    if (ExpectsKey()) throw YAML::ParserException(mark, "found " + node.Found() + ", expected a key");
+    if (ExpectsKey()) throw Complaint(mark, "found " + node.Found() + ", expected a key");
     open_.push_back(std::move(node));
   }
 
@@ -87,11 +94,11 @@ class TreeBuilder : public YAML::EventHandler {
 
   void AttachKey(const YamlNode& node, const YAML::Mark& mark) {
     if (node.kind != YamlNode::Kind::kScalar) {
-      throw YAML::ParserException(mark, "found " + node.Found() + ", expected a key");
+      throw Complaint(mark, "found " + node.Found() + ", expected a key");
     }
     for (const YamlKey& key : open_.back().keys) {
       if (key.text == node.text) {
-        throw YAML::ParserException(
+        throw Complaint(
             mark, "the key '" + key.text + "' stands here a second time, first in line " + std::to_string(key.line));
       }
     }
@@ -158,8 +165,11 @@ Result<YamlNode> ParseYaml(std::string_view text, const std::string& name) {
     YamlNode root = builder.TakeRoot();
     NameTrails(root);
     return root;
+  } catch (const Complaint& complaint) {
+    return Error{Place(name, complaint.line, complaint.column) + complaint.sentence};
   } catch (const YAML::Exception& exception) {
-    return Error{Place(name, OneBased(exception.mark.line), OneBased(exception.mark.column)) + exception.msg};
+    return Error{Place(name, OneBased(exception.mark.line), OneBased(exception.mark.column)) +
+                 "not YAML: " + exception.msg};
   }
 }
 

@@ -31,8 +31,7 @@ std::string Targets(const Calibration& c) {
       set_aside += count;
       reasons += "set aside: " + target.name + ": " + Count(count) + " points " + reason + "\n";
     }
-    table.Add({target.name, Count(target.points), Count(target.missing), Count(set_aside),
-               Significant(target.rms, 4)});
+    table.Add({target.name, Count(target.points), Count(target.missing), Count(set_aside), Significant(target.rms, 4)});
   }
   return table.Text() + reasons;
 }
@@ -55,7 +54,8 @@ std::string ToText(const Calibration& c) {
           Significant(c.lack_of_fit.pure_error_sigma, 4) + " mm\n";
   if (c.lack_of_fit.dof1 > 0)
     text += "lack of fit: F = " + Significant(c.lack_of_fit.F, 4) + " (" + Count(c.lack_of_fit.dof1) + ", " +
-            Count(c.lack_of_fit.dof2) + " degrees of freedom, p = " + Significant(c.lack_of_fit.p, 2) + ")\n";
+            Count(c.lack_of_fit.dof2) + " degrees of freedom, p " +
+            (c.lack_of_fit.p < 1e-16 ? "< 1e-16" : "= " + Significant(c.lack_of_fit.p, 2)) + ")\n";
   if (c.condition > 0) {
     text += "condition: " + Significant(c.condition, 3) + "; least determined direction:";
     for (const auto& [name, component] : c.weakest) text += " " + name + " " + Significant(component, 2);
@@ -81,6 +81,12 @@ std::string ToText(const Comparison& comparison) {
   const auto um = [](double mm) { return Significant(mm * 1000, 3); };
   for (const ComparisonRow& row : comparison.rows) {
     std::vector<std::string> cells = {row.method};
+    if (!row.note.empty()) notes += row.method + ": " + row.note + "\n";
+    if (row.values.empty()) {  // left out, as the note says
+      cells.resize(header.size(), "-");
+      table.Add(cells);
+      continue;
+    }
     for (size_t k = 0; k < row.values.size(); ++k)
       cells.push_back(comparison.is_angle[k] ? Significant(row.values[k] * 1000, 3)
                                              : Concise(row.values[k], row.u[k].value_or(0)));
@@ -94,7 +100,6 @@ std::string ToText(const Comparison& comparison) {
     cells.push_back(Count(row.effort));
     cells.push_back(Significant(row.seconds, 2));
     table.Add(cells);
-    if (!row.note.empty()) notes += row.method + ": " + row.note + "\n";
   }
   return table.Text() + notes;
 }

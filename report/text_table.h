@@ -18,7 +18,7 @@ class TextTable {
 // "123.0021(54)": the value to the second digit of u, which stands in units of the last digit (GUM 7.2.2). Without a u
 // that is finite and greater than zero: six digits.
 std::string Concise(double value, double u);
-std::string Count(double number);  // whole, without exponent
+std::string Count(double number);                   // whole, without exponent
 std::string Significant(double value, int digits);  // never in exponents between 1e-4 and 1e6
 
 }  // namespace scancal

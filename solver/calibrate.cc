@@ -64,17 +64,19 @@ void AddBudget(const Solution& solution, const Eigen::MatrixXd& clustered, const
             {line.source, quantity.unit, quantity.u, Plain(line.sensitivity), Deviations(line.covariance)});
 }
 
-void WarnOfJackknife(const Jackknife& jackknife, double clustered_dof, Calibration* result) {
+void WarnOfJackknife(const Solution& solution, const Jackknife& jackknife, double clustered_dof, Calibration* result) {
   const auto m = static_cast<double>(jackknife.estimates.rows());
-  for (const Parameter& parameter : result->parameters) {
-    if (parameter.role != Role::kEstimate || !(parameter.u_clustered > 0)) continue;
-    const double ratio = parameter.u_jackknife / parameter.u_clustered;
-    if (clustered_dof >= 1 && FUpperTail(ratio * ratio, m - 1, clustered_dof) < kSuspicious)
+  if (m < 2 || clustered_dof < 1) return;
+  const Eigen::VectorXd expected = ExpectedJackknife(solution.problem, solution.linear).diagonal();
+  for (size_t k = 0; k < result->estimated.size(); ++k) {
+    const auto e = static_cast<Eigen::Index>(k);
+    const double ratio = jackknife.covariance(e, e) / expected[e];
+    if (FUpperTail(ratio, m - 1, clustered_dof) < kSuspicious)
       result->warnings.push_back(
-          fmt::format("{}: leaving one target out moves it by {:.2g} times its u, more than chance explains with {} "
-                      "targets; the targets "
-                      "disagree, so u is probably too small",
-                      parameter.name, ratio, m));
+          fmt::format("{}: leaving one target out moves it {:.2g} times as far as its u explains; the targets "
+                      "disagree, so u is probably "
+                      "too small",
+                      result->estimated[k], std::sqrt(ratio)));
   }
 }
 
@@ -147,10 +149,10 @@ Calibration Summarize(const Solution& solution, double sigma, const PureError& p
   AddBudget(solution, clustered.matrix, budget, &result);
   for (Eigen::Index t = 0; t < jackknife.estimates.rows(); ++t)
     result.jackknife.push_back(Plain(jackknife.estimates.row(t).transpose()));
-  WarnOfJackknife(jackknife, clustered.dof, &result);
+  WarnOfJackknife(solution, jackknife, clustered.dof, &result);
   if (result.lack_of_fit.dof1 > 0 && result.lack_of_fit.p < kSuspicious)
     result.warnings.push_back(
-        fmt::format("lack of fit: F = {:.3g} (p = {:.1g}): views differ by more than the noise within them explains; "
+        fmt::format("lack of fit: F = {:.3g}: views differ by more than the noise within them explains; "
                     "the naive uncertainty "
                     "is too small, the clustered one allows for it if it differs from view to view",
                     result.lack_of_fit.F, result.lack_of_fit.p));

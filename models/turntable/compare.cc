@@ -11,6 +11,7 @@ namespace scancal {
 namespace {
 
 constexpr double kSteps[] = {1, 0.1, 0.01};  // mm: the published one, and what finer ones bring
+constexpr double kMostNodes = 1e8;           // about a minute
 constexpr int kThreads = 2;
 
 class Stopwatch {
@@ -27,41 +28,44 @@ std::vector<double> Values(const TurntablePose& pose) { return {pose.M, pose.N, 
 struct Flatness {
   double S = 0, rms = 0;
 };
-Flatness FlatnessAt(const TurntableStart& start, const TurntablePose& pose, PlaneFit kind) {
+Flatness FlatnessAt(const std::vector<Placement>& placements, const TurntablePose& pose, PlaneFit kind) {
   double sum = 0, squares = 0, points = 0;
-  for (const Placement& placement : start.placements) {
+  for (const Placement& placement : placements) {
     const PlaneStorey storey(Views(placement.profiles, Turntable::Residuals::kPlane), pose);
     sum += storey.Rmse(pose.M, pose.N, kind);
     squares += std::pow(storey.Rmse(pose.M, pose.N, PlaneFit::kOrthogonal), 2) * placement.Points();
     points += placement.Points();
   }
-  return {sum / static_cast<double>(start.placements.size()), std::sqrt(squares / points)};
+  return {sum / static_cast<double>(placements.size()), std::sqrt(squares / points)};
 }
 
-// Sum of squares of placement t seen with a pose found without it.
-double HeldOutSquares(const TurntableStart& start, size_t t, const TurntablePose& pose) {
-  const PlaneStorey storey(Views(start.placements[t].profiles, Turntable::Residuals::kPlane), pose);
-  return std::pow(storey.Rmse(pose.M, pose.N, PlaneFit::kOrthogonal), 2) * start.placements[t].Points();
+// Each placement seen with the pose that was found without it.
+std::optional<double> HeldOutRms(const std::vector<Placement>& placements, const std::vector<TurntablePose>& without) {
+  if (without.empty()) return std::nullopt;
+  double squares = 0, points = 0;
+  for (size_t t = 0; t < placements.size(); ++t) {
+    squares += std::pow(FlatnessAt({placements[t]}, without[t], PlaneFit::kOrthogonal).rms, 2) * placements[t].Points();
+    points += placements[t].Points();
+  }
+  return std::sqrt(squares / points);
 }
 
-double AllPoints(const TurntableStart& start) {
-  double points = 0;
-  for (const Placement& placement : start.placements) points += placement.Points();
-  return points;
-}
-
-TurntableStart Without(const TurntableStart& start, size_t t) {
-  TurntableStart rest = start;
-  rest.placements.erase(rest.placements.begin() + static_cast<std::ptrdiff_t>(t));
-  rest.storeys.erase(rest.storeys.begin() + static_cast<std::ptrdiff_t>(t));
-  return rest;
-}
-
-ComparisonRow GridRow(const TurntableStart& start, GridBox box, double step, PlaneFit kind) {
+ComparisonRow GridRow(const std::vector<Placement>& placements, const TurntableStart& start, GridBox box, double step,
+                      PlaneFit kind) {
   const std::string name =
       fmt::format("grid, {}, step {:g}", kind == PlaneFit::kVertical ? "as published" : "orthogonal", step);
   Progress progress(name);
   box.step = step;
+  ComparisonRow row;
+  row.method = name;
+  row.is_grid = true;
+  row.quantisation = step / std::sqrt(12.0);
+  const auto [rows, columns] = box.Nodes();
+  row.effort = static_cast<double>(rows) * static_cast<double>(columns);
+  if (row.effort > kMostNodes) {
+    row.note = fmt::format("left out: {:.2g} nodes", row.effort);
+    return row;
+  }
   const Stopwatch watch;
   const GridResult grid = GridSearch(
       box, static_cast<int>(start.storeys.size()),
@@ -69,34 +73,28 @@ ComparisonRow GridRow(const TurntableStart& start, GridBox box, double step, Pla
         for (size_t t = 0; t < rmse.size(); ++t) rmse[t] = start.storeys[t].Rmse(at[0], at[1], kind);
       },
       kThreads, [&](double fraction) { progress.Show(fraction); });
-  ComparisonRow row;
-  row.method = name;
-  row.is_grid = true;
   row.seconds = watch.Seconds();
-  row.effort = static_cast<double>(grid.nodes);
-  row.quantisation = step / std::sqrt(12.0);
   TurntablePose pose = start.pose;
   pose.M = grid.best.at[0];
   pose.N = grid.best.at[1];
   row.values = Values(pose);
   row.u.resize(row.values.size());
   row.S = grid.best.value;
-  row.rms = FlatnessAt(start, pose, kind).rms;
+  row.rms = FlatnessAt(placements, pose, kind).rms;
   if (grid.best.on_edge) row.note = "minimum on the edge";
-  double squares = 0;
-  for (size_t t = 0; t < grid.without.size(); ++t) {
-    pose.M = grid.without[t].at[0];
-    pose.N = grid.without[t].at[1];
-    squares += HeldOutSquares(start, t, pose);
+  std::vector<TurntablePose> without(grid.without.size(), pose);
+  for (size_t t = 0; t < without.size(); ++t) {
+    without[t].M = grid.without[t].at[0];
+    without[t].N = grid.without[t].at[1];
   }
-  if (!grid.without.empty()) row.held_out_rms = std::sqrt(squares / AllPoints(start));
+  row.held_out_rms = HeldOutRms(placements, without);
   return row;
 }
 
 ComparisonRow JointRow(const TurntableScanner& scanner, const TurntableStart& start, const std::string& name,
                        Turntable::Residuals residuals, const std::vector<int>& estimate) {
   const Stopwatch watch;
-  const TurntableFit fit = scanner.Fit(start, residuals, estimate);
+  const TurntableFit fit = scanner.Fit(start.pose, residuals, estimate);
   ComparisonRow row;
   row.method = name;
   row.seconds = watch.Seconds();
@@ -115,14 +113,13 @@ ComparisonRow JointRow(const TurntableScanner& scanner, const TurntableStart& st
     }
     if (!fit.solution.fit.converged) row.note = "no convergence";
   }
-  const Flatness flatness = FlatnessAt(start, pose, PlaneFit::kOrthogonal);
+  const Flatness flatness = FlatnessAt(scanner.placements(), pose, PlaneFit::kOrthogonal);
   row.S = flatness.S;
   row.rms = flatness.rms;
-  if (start.placements.size() < 2) return row;
-  double squares = 0;
-  for (size_t t = 0; t < start.placements.size(); ++t)
-    squares += HeldOutSquares(start, t, scanner.Fit(Without(start, t), residuals, estimate).Pose());
-  row.held_out_rms = std::sqrt(squares / AllPoints(start));
+  std::vector<TurntablePose> without;
+  for (size_t t = 0; scanner.placements().size() > 1 && t < scanner.placements().size(); ++t)
+    without.push_back(scanner.Fit(start.pose, residuals, estimate, t).Pose());
+  row.held_out_rms = HeldOutRms(scanner.placements(), without);
   return row;
 }
 
@@ -132,7 +129,7 @@ Result<Comparison> TurntableScanner::Compare() const {
   SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
   Comparison comparison{{"M", "N", "tilt_x", "tilt_y"}, {false, false, true, true}, {}};
   for (const PlaneFit kind : {PlaneFit::kVertical, PlaneFit::kOrthogonal})
-    for (const double step : kSteps) comparison.rows.push_back(GridRow(start, Box(), step, kind));
+    for (const double step : kSteps) comparison.rows.push_back(GridRow(placements_, start, Box(), step, kind));
   using enum Turntable::Residuals;
   comparison.rows.push_back(JointRow(*this, start, "joint, point to plane", kPlane, {}));
   comparison.rows.push_back(JointRow(*this, start, "joint, depth", kDepth, {}));

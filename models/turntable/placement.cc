@@ -7,6 +7,7 @@
 #include <numbers>
 #include "models/parts/robust_line.h"
 #include "models/turntable/raw_profiles.h"
+#include "models/turntable/robust_plane.h"
 
 namespace scancal {
 namespace {
@@ -16,7 +17,8 @@ constexpr size_t kFewestForRobust = 5;
 constexpr double kRounding = 1e-7;              // of a profile's extent: what is nearer to its line is on it
 constexpr double kImplausibleLength_mm = 50e3;  // no plate is seen from farther away
 constexpr double kDegree = std::numbers::pi / 180;
-const char kReasonOffLine[] = "off the line of its profile";
+constexpr double kMadToSigma = 1.4826;  // of a normal distribution
+const char kReasonOffLine[] = "off the line of their profile", kReasonOffPlane[] = "off the plane of their target";
 
 double Median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -31,10 +33,13 @@ double Extent(const RawProfile& profile) {
   return std::hypot(*y1 - *y0, *z1 - *z0);
 }
 
-void Keep(const std::vector<size_t>& which, std::vector<double>* values) {
-  if (values->empty()) return;
-  for (size_t k = 0; k < which.size(); ++k) (*values)[k] = (*values)[which[k]];
-  values->resize(which.size());
+// Removes the points whose distance is larger; returns how many.
+double KeepWithin(const std::vector<double>& distances, double within, RawProfile* profile) {
+  for (auto* column : {&profile->y, &profile->z, &profile->range}) {
+    size_t i = 0;
+    std::erase_if(*column, [&](double) { return distances[i++] > within; });
+  }
+  return static_cast<double>(std::count_if(distances.begin(), distances.end(), [&](double d) { return d > within; }));
 }
 
 // Removes the points off each profile's own line. A profile's scale is never taken smaller than the placement's median,
@@ -54,13 +59,33 @@ double SetAsideOffLine(std::vector<RawProfile>* profiles) {
     RawProfile& profile = (*profiles)[k];
     if (profile.y.size() < kFewestForRobust) continue;
     const double within = std::max(kOffLine * std::max(lines[k].scale, common), kRounding * Extent(profile));
-    std::vector<size_t> which;
+    std::vector<double> distances;
     for (size_t i = 0; i < profile.y.size(); ++i)
-      if (std::abs(lines[k].Distance(profile.y[i], profile.z[i])) <= within) which.push_back(i);
-    removed += static_cast<double>(profile.y.size() - which.size());
-    if (which.size() == profile.y.size()) continue;
-    for (auto* column : {&profile.y, &profile.z, &profile.range}) Keep(which, column);
+      distances.push_back(std::abs(lines[k].Distance(profile.y[i], profile.z[i])));
+    removed += KeepWithin(distances, within, &profile);
   }
+  return removed;
+}
+
+// Removes the points off the plane of most profiles, by the distances' own robust scale.
+double SetAsideOffPlane(const TurntablePose& pose, std::vector<RawProfile>* profiles) {
+  std::vector<Profile> compressed;
+  for (const RawProfile& profile : *profiles)
+    compressed.push_back(CompressProfile(profile.alpha, profile.y, profile.z, {}));
+  const RobustPlane plane = FitRobustPlane(Views(compressed, Turntable::Residuals::kPlane), pose);
+  std::vector<std::vector<double>> distances;
+  std::vector<double> on;
+  for (size_t k = 0; k < profiles->size(); ++k) {
+    const RawProfile& profile = (*profiles)[k];
+    std::vector<double>& of_profile = distances.emplace_back();
+    for (size_t i = 0; i < profile.y.size(); ++i)
+      of_profile.push_back(std::abs(plane.Distance(pose.Point(profile.alpha, profile.y[i], profile.z[i]))));
+    if (!plane.off[k]) on.insert(on.end(), of_profile.begin(), of_profile.end());
+  }
+  const double within = std::max(kOffLine * kMadToSigma * Median(on), kRounding * Extent(profiles->front()));
+  double removed = 0;
+  for (size_t k = 0; k < profiles->size(); ++k) removed += KeepWithin(distances[k], within, &(*profiles)[k]);
+  std::erase_if(*profiles, [](const RawProfile& profile) { return profile.y.empty(); });
   return removed;
 }
 
@@ -117,17 +142,23 @@ Profile CompressProfile(double alpha, std::span<const double> y, std::span<const
   return profile;
 }
 
-Result<Placement> ReadPlacement(const ScanDeclaration& scan, double sense) {
+Result<RawScan> ReadCleanScan(const ScanDeclaration& scan, double sense) {
   SCANCAL_ASSIGN_OR_RETURN(RawScan raw, ReadRawScan(scan, sense));
+  raw.off_line = SetAsideOffLine(&raw.profiles);
+  return raw;
+}
+
+Placement CompressPlacement(const RawScan& scan, const TurntablePose& pose) {
   Placement placement;
   placement.name = scan.name;
-  placement.missing = raw.missing;
-  if (const double removed = SetAsideOffLine(&raw.profiles); removed > 0) placement.set_aside[kReasonOffLine] = removed;
-  for (RawProfile& profile : raw.profiles) {
+  placement.missing = scan.missing;
+  if (scan.off_line > 0) placement.set_aside[kReasonOffLine] = scan.off_line;
+  std::vector<RawProfile> profiles = scan.profiles;
+  if (const double off = SetAsideOffPlane(pose, &profiles); off > 0) placement.set_aside[kReasonOffPlane] = off;
+  for (const RawProfile& profile : profiles) {
     for (const auto* column : {&profile.y, &profile.z})
       for (const double value : *column) placement.largest = std::max(placement.largest, std::abs(value));
     placement.profiles.push_back(CompressProfile(profile.alpha, profile.y, profile.z, profile.range));
-    profile = {};  // the points are gone from here on
   }
   return placement;
 }

@@ -7,6 +7,7 @@
 #include "io/result.h"
 #include "models/turntable.h"
 #include "models/turntable/declaration.h"
+#include "models/turntable/raw_profiles.h"
 #include "solver/calibrate.h"
 
 namespace scancal {
@@ -30,8 +31,11 @@ struct Placement {
   bool IsLidar() const { return !profiles.empty() && profiles.front().ranged.has_value(); }
 };
 
-// Reads, keeps, groups into profiles, sets aside what is off each profile's line, compresses. Shows progress.
-Result<Placement> ReadPlacement(const ScanDeclaration& scan, double sense);
+// Reads, keeps, groups into profiles, and removes what is off each profile's own line. Shows progress.
+Result<RawScan> ReadCleanScan(const ScanDeclaration& scan, double sense);
+
+// Sets aside what is off the plane of most profiles, as it appears at `pose`, and compresses the rest.
+Placement CompressPlacement(const RawScan& scan, const TurntablePose& pose);
 
 // The profiles as the model sees them.
 std::vector<Turntable::View> Views(const std::vector<Profile>& profiles, Turntable::Residuals residuals);

@@ -114,7 +114,7 @@ Result<RawScan> ReadRawScan(const ScanDeclaration& scan, double sense) {
     progress.Show(static_cast<double>(reader.bytes_read()) /
                   static_cast<double>(std::max<int64_t>(1, reader.bytes_total())));
   }
-  RawScan result{gatherer.Take(), static_cast<double>(reader.missing())};
+  RawScan result{scan.name, gatherer.Take(), static_cast<double>(reader.missing()), 0};
   if (result.profiles.empty())
     return Error{scan.format.path.string() + ": target " + scan.name + ": no point is left; widen its keep: intervals"};
   return result;

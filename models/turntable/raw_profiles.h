@@ -14,8 +14,10 @@ struct RawProfile {
 };
 
 struct RawScan {
+  std::string name;                  // of the target
   std::vector<RawProfile> profiles;  // in the order of their keys
-  double missing = 0;
+  double missing = 0;                // no return
+  double off_line = 0;               // removed: off the line of their profile
 };
 
 // Reads the points that `keep` keeps. With a column `profile` its values group the points, in any order; without it a

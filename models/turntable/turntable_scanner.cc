@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include "io/progress.h"
-#include "models/turntable/off_plane.h"
 #include "models/turntable/verdicts.h"
 
 namespace scancal {
 namespace {
 
-constexpr int kRoundsOfSettingAside = 4;
-const char kReasonOffPlane[] = "on a profile off the plane of its target";
+constexpr int kRoundsOfReading = 4;
 
 TurntablePose PoseOf(const Quantities& quantities) {
   return {quantities[Turntable::kM].value,      quantities[Turntable::kN].value,
@@ -26,24 +25,25 @@ std::vector<PlaneStorey> Storeys(const std::vector<Placement>& placements, const
   return storeys;
 }
 
-// The placements without the profiles that are off their plane at `pose`, counted.
-std::vector<Placement> SetAsideOffPlane(const std::vector<Placement>& all, const TurntablePose& pose) {
-  std::vector<Placement> kept;
-  for (const Placement& placement : all) {
-    const std::vector<bool> off = OffPlane(placement.profiles, pose);
-    Placement& rest = kept.emplace_back(placement);
-    rest.profiles.clear();
-    double removed = 0;
-    for (size_t k = 0; k < off.size(); ++k) {
-      if (off[k]) {
-        removed += placement.profiles[k].count;
-      } else {
-        rest.profiles.push_back(placement.profiles[k]);
-      }
-    }
-    if (removed > 0) rest.set_aside[kReasonOffPlane] = removed;
+bool SamePoints(const std::vector<Placement>& a, const std::vector<Placement>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Placement& x, const Placement& y) { return x.Points() == y.Points(); });
+}
+
+GridBox BoxOf(const TurntableDeclaration& declaration, const Turntable& model) {
+  GridBox box = declaration.search;
+  for (size_t k = 0; k < 2; ++k) {
+    const Quantity& quantity = model.quantities()[k == 0 ? Turntable::kM : Turntable::kN];
+    if (quantity.role != Role::kEstimate) box.lower[k] = box.upper[k] = quantity.value;
   }
-  return kept;
+  return box;
+}
+
+TurntablePose MiddleOf(const GridBox& box, const Turntable& model) {
+  TurntablePose pose = PoseOf(model.quantities());
+  pose.M = (box.lower[0] + box.upper[0]) / 2;
+  pose.N = (box.lower[1] + box.upper[1]) / 2;
+  return pose;
 }
 
 PureError Pooled(const std::vector<Placement>& placements) {
@@ -62,45 +62,48 @@ PureError Pooled(const std::vector<Placement>& placements) {
 TurntableScanner::TurntableScanner(TurntableDeclaration declaration, Turntable model, std::vector<Placement> placements)
     : declaration_(std::move(declaration)), model_(std::move(model)), placements_(std::move(placements)) {}
 
-GridBox TurntableScanner::Box() const {
-  GridBox box = declaration_.search;
-  for (size_t k = 0; k < 2; ++k) {
-    const Quantity& quantity = model_.quantities()[k == 0 ? Turntable::kM : Turntable::kN];
-    if (quantity.role != Role::kEstimate) box.lower[k] = box.upper[k] = quantity.value;
-  }
-  return box;
+GridBox TurntableScanner::Box() const { return BoxOf(declaration_, model_); }
+
+GridResult TurntableScanner::Search(const std::vector<PlaneStorey>& storeys) const {
+  Progress progress("searching M, N");
+  const auto rmse = [&](const std::array<double, 2>& at, std::span<double> values) {
+    for (size_t t = 0; t < values.size(); ++t) values[t] = storeys[t].Rmse(at[0], at[1], PlaneFit::kOrthogonal);
+  };
+  return GridSearch(Box(), static_cast<int>(storeys.size()), rmse, 2, [&](double done) { progress.Show(done); });
 }
 
 Result<TurntableStart> TurntableScanner::Initialize() const {
   TurntableStart start;
-  start.placements = placements_;
-  start.pose = PoseOf(model_.quantities());
-  Progress progress("searching M, N");
-  for (int round = 0; round < kRoundsOfSettingAside; ++round) {
-    start.storeys = Storeys(start.placements, start.pose);
-    const auto rmse = [&](const std::array<double, 2>& at, std::span<double> values) {
-      for (size_t t = 0; t < values.size(); ++t) values[t] = start.storeys[t].Rmse(at[0], at[1], PlaneFit::kOrthogonal);
-    };
-    start.grid = GridSearch(Box(), static_cast<int>(start.storeys.size()), rmse, 2,
-                            [&](double fraction) { progress.Show(fraction); });
-    start.pose.M = start.grid.best.at[0];
-    start.pose.N = start.grid.best.at[1];
-    std::vector<Placement> next = SetAsideOffPlane(placements_, start.pose);
-    const bool same = std::equal(next.begin(), next.end(), start.placements.begin(),
-                                 [](const auto& a, const auto& b) { return a.profiles.size() == b.profiles.size(); });
-    if (same) break;
-    start.placements = std::move(next);
+  const TurntablePose nominal = PoseOf(model_.quantities()), middle = MiddleOf(Box(), model_);
+  start.storeys = Storeys(placements_, nominal);
+  SCANCAL_RETURN_IF_ERROR(CheckOrientations(model_.quantities(), placements_, start.storeys, middle));
+  start.grid = Search(start.storeys);
+  start.pose = nominal;
+  start.pose.M = start.grid.best.at[0];
+  start.pose.N = start.grid.best.at[1];
+  // The noise of a lidar can pull the minimum of S far away. The middle of the interval is free of that, and two starts
+  // that end in one place are no local minimum.
+  double least = std::numeric_limits<double>::infinity();
+  for (const TurntablePose& from : {TurntablePose(start.pose), middle}) {
+    const TurntableFit fit = Fit(from, Turntable::Residuals::kDepth);
+    if (!(fit.solution.fit.cost < least) || !CheckDetermined(fit).ok()) continue;
+    least = fit.solution.fit.cost;
+    start.pose = fit.Pose();
   }
-  start.storeys = Storeys(start.placements, start.pose);
-  SCANCAL_RETURN_IF_ERROR(CheckOrientations(model_.quantities(), start));
   return start;
 }
 
-TurntableFit TurntableScanner::Fit(const TurntableStart& start, Turntable::Residuals residuals,
-                                   const std::vector<int>& estimate, int max_iterations) const {
+TurntableFit TurntableScanner::Fit(const TurntablePose& pose, Turntable::Residuals residuals,
+                                   const std::vector<int>& estimate, std::optional<size_t> without,
+                                   int max_iterations) const {
   TurntableFit fit;
-  const double pure = Pooled(start.placements).sigma();
-  fit.sigma = residuals == Turntable::Residuals::kDepth && pure > 0 ? pure : std::max(start.grid.best.value, 1e-9);
+  std::vector<Placement> placements = placements_;
+  if (without) placements.erase(placements.begin() + static_cast<std::ptrdiff_t>(*without));
+  const std::vector<PlaneStorey> storeys = Storeys(placements, pose);
+  double rms = 1e-9;  // mm: noiseless data need a scale too
+  for (const PlaneStorey& storey : storeys) rms = std::max(rms, storey.Rmse(pose.M, pose.N, PlaneFit::kOrthogonal));
+  const double pure = Pooled(placements).sigma();
+  fit.sigma = residuals == Turntable::Residuals::kDepth && pure > 0 ? pure : rms;
   const auto model = std::make_shared<Turntable>(residuals);
   for (int k = 0; k < std::ssize(model_.quantities()); ++k) model->quantity(k) = model_.quantities()[k];
   for (const int k : estimate) model->quantity(k).role = Role::kEstimate;
@@ -108,11 +111,11 @@ TurntableFit TurntableScanner::Fit(const TurntableStart& start, Turntable::Resid
   if (noise.role != Role::kConsider) noise.u = fit.sigma;
   noise.role = Role::kConsider;
 
-  for (size_t t = 0; t < start.placements.size(); ++t) {
+  for (size_t t = 0; t < placements.size(); ++t) {
     Turntable::Target& target = fit.targets.emplace_back();
-    target.name = start.placements[t].name;
-    target.views = Views(start.placements[t].profiles, residuals);
-    const auto [normal, distance] = start.storeys[t].FitPlane(start.pose.M, start.pose.N);
+    target.name = placements[t].name;
+    target.views = Views(placements[t].profiles, residuals);
+    const auto [normal, distance] = storeys[t].FitPlane(pose.M, pose.N);
     Turntable::SetPlane(normal, distance, &target);
   }
   Problem problem = MakeProblem<Turntable>(model, fit.targets);
@@ -120,8 +123,8 @@ TurntableFit TurntableScanner::Fit(const TurntableStart& start, Turntable::Resid
   Estimate from = NominalStart(problem);
   Eigen::Index e = 0;
   for (const int k : problem.With({Scope::kSystem}, Role::kEstimate)) {
-    if (k == Turntable::kM) from.system[e] = start.pose.M;
-    if (k == Turntable::kN) from.system[e] = start.pose.N;
+    if (k == Turntable::kM) from.system[e] = pose.M;
+    if (k == Turntable::kN) from.system[e] = pose.N;
     ++e;
   }
   fit.solution = Solve(std::move(problem), from, {max_iterations});
@@ -147,14 +150,14 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
     return Error{"residual: found \"" + choice.residual + "\", expected depth or plane"};
   SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
   const auto began = std::chrono::steady_clock::now();
-  const TurntableFit fit =
-      Fit(start, plane ? Turntable::Residuals::kPlane : Turntable::Residuals::kDepth, {}, choice.max_iterations);
+  const TurntableFit fit = Fit(start.pose, plane ? Turntable::Residuals::kPlane : Turntable::Residuals::kDepth, {}, {},
+                               choice.max_iterations);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
   SCANCAL_RETURN_IF_ERROR(CheckDetermined(fit));
 
   // Within a profile the plain residual repeats as the depth does, seen at an angle: its pure error is not comparable.
-  Calibration result = Summarize(fit.solution, fit.sigma, plane ? PureError{} : Pooled(start.placements));
-  result.lack_of_fit.pure_error_sigma = Pooled(start.placements).sigma();
+  Calibration result = Summarize(fit.solution, fit.sigma, plane ? PureError{} : Pooled(placements_));
+  result.lack_of_fit.pure_error_sigma = Pooled(placements_).sigma();
   result.model = kTurntable.name;
   result.name = declaration_.dataset.name;
   result.residual = plane ? "plane" : "depth";
@@ -167,8 +170,8 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
                  static_cast<double>(start.grid.nodes)};
   for (size_t t = 0; t < result.targets.size(); ++t) {
     TargetSummary& target = result.targets[t];
-    target.missing = start.placements[t].missing;
-    target.set_aside = start.placements[t].set_aside;
+    target.missing = placements_[t].missing;
+    target.set_aside = placements_[t].set_aside;
     const auto [normal, distance] = fit.Plane(t);
     target.geometry = {{"normal", {normal[0], normal[1], normal[2]}}, {"distance", {distance}}};
   }
@@ -176,21 +179,33 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
   if (plane)
     result.warnings.push_back(
         "point-to-plane residuals are biased by the noise along depth; the depth residual is not");
-  Judge(box, start, fit, &result);
+  Judge(box, placements_, start, fit, &result);
   return result;
 }
 
+// Setting aside needs M and N, finding them needs clean points: in turn, until nothing changes. The first round is in
+// the middle of the search interval.
 Result<std::unique_ptr<Scanner>> LoadTurntable(const Dataset& dataset) {
   Turntable model(Turntable::Residuals::kDepth);
-  SCANCAL_ASSIGN_OR_RETURN(TurntableDeclaration declaration, DeclareTurntable(dataset, &model));
-  std::vector<Placement> placements;
+  SCANCAL_ASSIGN_OR_RETURN(const TurntableDeclaration declaration, DeclareTurntable(dataset, &model));
+  std::vector<RawScan> scans;
   for (const ScanDeclaration& scan : declaration.scans) {
-    SCANCAL_ASSIGN_OR_RETURN(Placement placement, ReadPlacement(scan, declaration.sense));
-    placements.push_back(std::move(placement));
+    SCANCAL_ASSIGN_OR_RETURN(RawScan raw, ReadCleanScan(scan, declaration.sense));
+    scans.push_back(std::move(raw));
   }
-  SCANCAL_RETURN_IF_ERROR(CheckPlausible(placements));
-  return std::unique_ptr<Scanner>(
-      std::make_unique<TurntableScanner>(std::move(declaration), std::move(model), std::move(placements)));
+  std::unique_ptr<TurntableScanner> scanner;
+  TurntablePose pose = MiddleOf(BoxOf(declaration, model), model);
+  for (int round = 0; round < kRoundsOfReading; ++round) {
+    std::vector<Placement> placements;
+    for (const RawScan& scan : scans) placements.push_back(CompressPlacement(scan, pose));
+    if (scanner && SamePoints(placements, scanner->placements())) break;
+    SCANCAL_RETURN_IF_ERROR(CheckPlausible(placements));
+    scanner = std::make_unique<TurntableScanner>(declaration, model, std::move(placements));
+    const Result<TurntableStart> start = scanner->Initialize();
+    if (!start.ok()) break;  // Calibrate will say so
+    pose = start->pose;
+  }
+  return std::unique_ptr<Scanner>(std::move(scanner));
 }
 
 std::vector<std::filesystem::path> TurntableScanner::Files() const {

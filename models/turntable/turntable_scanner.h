@@ -1,6 +1,7 @@
 // The turntable as a Scanner: search, start, verdicts by name.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 #include "models/scanner.h"
@@ -11,13 +12,12 @@
 
 namespace scancal {
 
-// Placements with everything that lies off the plate set aside, and the minimum of the orthogonal S: where refinement
-// starts.
+// Where refinement starts: the minimum of the grid search, or what a depth fit finds from there or, if that is better,
+// from the middle of the search interval.
 struct TurntableStart {
-  std::vector<Placement> placements;
   std::vector<PlaneStorey> storeys;  // one a placement, at the tilts that the data set declares
   GridResult grid;
-  TurntablePose pose;  // at the minimum
+  TurntablePose pose;
 };
 
 // A joint fit of M, N, the planes, and what else is estimated.
@@ -39,15 +39,19 @@ class TurntableScanner final : public Scanner {
   Result<Comparison> Compare() const override;
   Result<void> WriteSurface(const std::filesystem::path& file) const override;
 
-  // The search over the declared box; M or N that are not estimated keep their value.
+  // M or N that are not estimated keep their value.
   Result<TurntableStart> Initialize() const;
-  // The placements of `start`; estimate: indices of further quantities to be estimated (Turntable::kTiltX).
-  TurntableFit Fit(const TurntableStart& start, Turntable::Residuals residuals, const std::vector<int>& estimate = {},
-                   int max_iterations = 100) const;
+  // From planes fitted in closed form at `pose`; estimate: indices of further quantities to be estimated
+  // (Turntable::kTiltX); without: leave that placement out.
+  TurntableFit Fit(const TurntablePose& pose, Turntable::Residuals residuals, const std::vector<int>& estimate = {},
+                   std::optional<size_t> without = {}, int max_iterations = 100) const;
+  const std::vector<Placement>& placements() const { return placements_; }
   // The box of the search with the declared step.
   GridBox Box() const;
 
  private:
+  GridResult Search(const std::vector<PlaneStorey>& storeys) const;
+
   TurntableDeclaration declaration_;
   Turntable model_;
   std::vector<Placement> placements_;

@@ -70,10 +70,11 @@ void JudgeSearch(const GridBox& box, const TurntableStart& start, Calibration* c
 
 }  // namespace
 
-Result<void> CheckOrientations(const Quantities& quantities, const TurntableStart& start) {
+Result<void> CheckOrientations(const Quantities& quantities, const std::vector<Placement>& placements,
+                               const std::vector<PlaneStorey>& storeys, const TurntablePose& pose) {
   bool all_perpendicular = true;
-  for (size_t t = 0; t < start.placements.size(); ++t) {
-    const Eigen::Vector3d normal = start.storeys[t].FitPlane(start.pose.M, start.pose.N).first;
+  for (size_t t = 0; t < placements.size(); ++t) {
+    const Eigen::Vector3d normal = storeys[t].FitPlane(pose.M, pose.N).first;
     all_perpendicular &= std::abs(normal.z()) > std::cos(kPerpendicular);
   }
   std::vector<std::string> names;
@@ -83,11 +84,11 @@ Result<void> CheckOrientations(const Quantities& quantities, const TurntableStar
     return Error{Listed(names) +
                  ": not determined: every plate is perpendicular to the axis, and such a plane looks the same "
                  "for every offset; stand the plate up, 5 to 20 deg from the axis"};
-  for (size_t t = 0; t < start.placements.size(); ++t) {
-    const Eigen::Vector3d normal = start.storeys[t].FitPlane(start.pose.M, start.pose.N).first;
-    if (LeastIncidence(start.placements[t], start.pose, normal) < kEdgeOn)
+  for (size_t t = 0; t < placements.size(); ++t) {
+    const Eigen::Vector3d normal = storeys[t].FitPlane(pose.M, pose.N).first;
+    if (LeastIncidence(placements[t], pose, normal) < kEdgeOn)
       return Error{
-          "target " + start.placements[t].name +
+          "target " + placements[t].name +
           ": the sensor sees the plate edge-on, where depth tells nothing; narrow its keep: angle, or leave it out"};
   }
   return {};
@@ -104,11 +105,12 @@ Result<void> CheckDetermined(const TurntableFit& fit) {
   return {};
 }
 
-void Judge(const GridBox& box, const TurntableStart& start, const TurntableFit& fit, Calibration* calibration) {
+void Judge(const GridBox& box, const std::vector<Placement>& placements, const TurntableStart& start,
+           const TurntableFit& fit, Calibration* calibration) {
   JudgeSearch(box, start, calibration);
   JudgeOrientations(fit, calibration);
   double widest = 0;
-  for (const Placement& placement : start.placements) widest = std::max(widest, placement.Sweep());
+  for (const Placement& placement : placements) widest = std::max(widest, placement.Sweep());
   if (widest < kNarrowSweep)
     calibration->warnings.push_back(
         fmt::format("the sweep of {:.2g} deg is too narrow to tell M and N well: a wider one is the cheapest gain; if "

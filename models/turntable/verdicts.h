@@ -5,12 +5,14 @@
 namespace scancal {
 
 // Before the fit: plates that determine nothing (perpendicular to the axis), or that are seen edge-on.
-Result<void> CheckOrientations(const Quantities& quantities, const TurntableStart& start);
+Result<void> CheckOrientations(const Quantities& quantities, const std::vector<Placement>& placements,
+                               const std::vector<PlaneStorey>& storeys, const TurntablePose& pose);
 
 // After the fit: quantities without effect of their own.
 Result<void> CheckDetermined(const TurntableFit& fit);
 
 // Doubts about a computed result: minimum on the edge, parallel placements, a narrow sweep.
-void Judge(const GridBox& box, const TurntableStart& start, const TurntableFit& fit, Calibration* calibration);
+void Judge(const GridBox& box, const std::vector<Placement>& placements, const TurntableStart& start,
+           const TurntableFit& fit, Calibration* calibration);
 
 }  // namespace scancal

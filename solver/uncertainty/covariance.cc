@@ -32,28 +32,37 @@ Covariance NaiveCovariance(const Problem& problem, const Linearization& linear) 
   return {InverseInformation(linear) * (dof > 0 ? linear.cost / dof : std::numeric_limits<double>::infinity()), dof};
 }
 
-Covariance ClusteredCovariance(const Problem& problem, const Linearization& linear) {
+std::vector<TargetScores> ScoresByTarget(const Problem& problem, const Linearization& linear) {
   const Eigen::MatrixXd inverse = InverseInformation(linear);
-  Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(inverse.rows(), inverse.cols());
-  double clusters = 0;
+  std::vector<TargetScores> scores(linear.targets.size(), {0 * inverse, 0 * inverse});
   for (size_t t = 0; t < problem.targets.size(); ++t) {
     const LinearTarget& target = linear.targets[t];
+    scores[t].information = target.system_left.transpose() * target.system_left;
     for (size_t v = 0; v < problem.targets[t].views.size(); ++v) {
       const Block& view = problem.targets[t].views[v];
       const auto j = target.system_left.middleRows(target.first[v], view.size());
       if (!view.prior.empty()) {
-        meat += j.transpose() * j;
+        scores[t].meat += j.transpose() * j;
         continue;
       }
       const auto q = target.q.middleRows(target.first[v], view.size());
       const Eigen::MatrixXd hat = q * q.transpose() + j * inverse * j.transpose();
       const Eigen::VectorXd score = j.transpose() * Corrected(hat, target.r.segment(target.first[v], view.size()));
-      meat += score * score.transpose();
-      ++clusters;
+      scores[t].meat += score * score.transpose();
     }
   }
   const Eigen::MatrixXd& priors = linear.targets.back().system_left;
-  if (priors.size()) meat += priors.transpose() * priors;
+  if (priors.size()) scores.back().information = scores.back().meat = priors.transpose() * priors;
+  return scores;
+}
+
+Covariance ClusteredCovariance(const Problem& problem, const Linearization& linear) {
+  const Eigen::MatrixXd inverse = InverseInformation(linear);
+  Eigen::MatrixXd meat = 0 * inverse;
+  for (const TargetScores& target : ScoresByTarget(problem, linear)) meat += target.meat;
+  double clusters = 0;
+  for (const Target& target : problem.targets)
+    for (const Block& view : target.views) clusters += view.prior.empty();
   return {inverse * meat * inverse, std::max(0.0, clusters - QuantityCount(problem))};
 }
 

@@ -1,6 +1,7 @@
 // Covariances of the system's estimated quantities that need nothing but the residuals.
 #pragma once
 #include <Eigen/Core>
+#include <vector>
 #include "solver/linearize.h"
 
 namespace scancal {
@@ -22,5 +23,11 @@ Covariance NaiveCovariance(const Problem& problem, const Linearization& linear);
 // H_cc makes it unbiased for white noise (Bell and McCaffrey 2002, "CR2"). Priors enter with their own unit noise, not
 // their residual. dof: clusters minus quantities. linear: of the views.
 Covariance ClusteredCovariance(const Problem& problem, const Linearization& linear);
+
+// Per target, last the priors: J'J of the system, and the sum over its clusters of g_c g_c'.
+struct TargetScores {
+  Eigen::MatrixXd information, meat;
+};
+std::vector<TargetScores> ScoresByTarget(const Problem& problem, const Linearization& linear);
 
 }  // namespace scancal

@@ -1,4 +1,6 @@
 #include "solver/uncertainty/jackknife.h"
+#include <Eigen/LU>
+#include "solver/uncertainty/covariance.h"
 
 namespace scancal {
 
@@ -19,6 +21,35 @@ Jackknife LeaveOneTargetOut(const Problem& problem, const Fit& fit) {
   const Eigen::MatrixXd centred = result.estimates.rowwise() - result.estimates.colwise().mean();
   result.covariance = centred.transpose() * centred * static_cast<double>(m - 1) / static_cast<double>(m);
   return result;
+}
+
+Eigen::MatrixXd ExpectedJackknife(const Problem& problem, const Linearization& linear) {
+  const std::vector<TargetScores> scores = ScoresByTarget(problem, linear);
+  const Eigen::MatrixXd inverse = InverseInformation(linear);
+  const auto n = inverse.rows();
+  const size_t m = problem.targets.size();
+  Eigen::MatrixXd information = 0 * inverse;
+  for (const TargetScores& target : scores) information += target.information;
+  // moves[i]: n x (n m), how the scores of all targets move the fit without target i.
+  std::vector<Eigen::MatrixXd> moves(m);
+  Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(n, n * static_cast<Eigen::Index>(m));
+  for (size_t i = 0; i < m; ++i) {
+    const Eigen::MatrixXd without = (information - scores[i].information).inverse();
+    moves[i].resize(n, mean.cols());
+    for (size_t j = 0; j < m; ++j)
+      moves[i].middleCols(static_cast<Eigen::Index>(j) * n, n) =
+          without * ((i == j ? 1 : 0) * Eigen::MatrixXd::Identity(n, n) - scores[i].information * inverse);
+    mean += moves[i] / static_cast<double>(m);
+  }
+  Eigen::MatrixXd expected = 0 * inverse;
+  for (size_t i = 0; i < m; ++i) {
+    const Eigen::MatrixXd centred = moves[i] - mean;
+    for (size_t j = 0; j < m; ++j) {
+      const auto block = centred.middleCols(static_cast<Eigen::Index>(j) * n, n);
+      expected += block * scores[j].meat * block.transpose();
+    }
+  }
+  return expected * static_cast<double>(m - 1) / static_cast<double>(m);
 }
 
 }  // namespace scancal

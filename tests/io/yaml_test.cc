@@ -195,7 +195,7 @@ TEST_F(YamlTest, DuplicateKeysAreErrorsAtAnyDepth) {
 }
 
 TEST_F(YamlTest, SyntaxErrorsHaveAPlace) {
-  EXPECT_THAT(OpenError("a: [1, 2\nb: 3\n"), HasSubstr("data set's.yaml:2:2: "));
+  EXPECT_THAT(OpenError("a: [1, 2\nb: 3\n"), HasSubstr("data set's.yaml:2:2: not YAML: "));
   EXPECT_THAT(OpenError("a: 1\n b: 2\n"), HasSubstr("data set's.yaml:2:"));
 }
 

@@ -1,4 +1,4 @@
-#include "models/turntable/off_plane.h"
+#include "models/turntable/robust_plane.h"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
@@ -10,23 +10,19 @@ namespace scancal {
 namespace {
 
 constexpr size_t kSubsample = 48, kFewest = 6;
-constexpr double kOff = 6;             // median distances
 constexpr double kRounding_mm = 1e-6;  // nearer than this is on the plane
 
 using Points = std::array<Eigen::Vector3d, 3>;  // of one profile
 
-struct Plane {
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ(), through = Eigen::Vector3d::Zero();
-  double Distance(const Points& profile) const {  // rms
-    double sum = 0;
-    for (const Eigen::Vector3d& p : profile) sum += std::pow(normal.dot(p - through), 2);
-    return std::sqrt(sum / 3);
-  }
-};
+double Rms(const RobustPlane& plane, const Points& profile) {
+  double sum = 0;
+  for (const Eigen::Vector3d& p : profile) sum += std::pow(plane.Distance(p), 2);
+  return std::sqrt(sum / static_cast<double>(profile.size()));
+}
 
 // Total least squares of the profiles named. A start only, so the scatter matrix is good enough.
-Plane FitPlane(const std::vector<Points>& profiles, const std::vector<size_t>& which) {
-  Plane plane;
+RobustPlane FitPlane(const std::vector<Points>& profiles, const std::vector<size_t>& which) {
+  RobustPlane plane;
   const double n = 3.0 * static_cast<double>(which.size());
   for (const size_t k : which)
     for (const Eigen::Vector3d& p : profiles[k]) plane.through += p / n;
@@ -43,22 +39,22 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-std::vector<double> Distances(const Plane& plane, const std::vector<Points>& profiles) {
+std::vector<double> Distances(const RobustPlane& plane, const std::vector<Points>& profiles) {
   std::vector<double> distances;
-  for (const Points& profile : profiles) distances.push_back(plane.Distance(profile));
+  for (const Points& profile : profiles) distances.push_back(Rms(plane, profile));
   return distances;
 }
 
 // The plane through two profiles with the least median distance; profiles in the order of their angles.
-Plane LeastMedian(const std::vector<Points>& ordered) {
+RobustPlane LeastMedian(const std::vector<Points>& ordered) {
   std::vector<Points> sample;
   const size_t n = std::min(ordered.size(), kSubsample);
   for (size_t k = 0; k < n; ++k) sample.push_back(ordered[k * ordered.size() / n]);
-  Plane best;
+  RobustPlane best;
   double least = std::numeric_limits<double>::infinity();
   for (const size_t apart : {n / 2, n / 3}) {
     for (size_t i = 0; i + apart < n; ++i) {
-      const Plane plane = FitPlane(sample, {i, i + apart});
+      const RobustPlane plane = FitPlane(sample, {i, i + apart});
       const double median = Median(Distances(plane, sample));
       if (median < least) {
         least = median;
@@ -71,9 +67,7 @@ Plane LeastMedian(const std::vector<Points>& ordered) {
 
 }  // namespace
 
-std::vector<bool> OffPlane(const std::vector<Profile>& profiles, const TurntablePose& pose) {
-  std::vector<bool> off(profiles.size(), false);
-  if (profiles.size() < kFewest) return off;
+RobustPlane FitRobustPlane(std::span<const Turntable::View> profiles, const TurntablePose& pose) {
   std::vector<size_t> order(profiles.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
@@ -81,23 +75,28 @@ std::vector<bool> OffPlane(const std::vector<Profile>& profiles, const Turntable
   std::vector<Points> points;
   for (const size_t k : order) {
     Points& profile = points.emplace_back();
-    const auto pseudo = PseudoPoints(profiles[k].factor);
-    for (size_t i = 0; i < 3; ++i) profile[i] = pose.Point(profiles[k].alpha, pseudo[i].y, pseudo[i].z);
+    for (size_t i = 0; i < 3; ++i)
+      profile[i] = pose.Point(profiles[k].alpha, profiles[k].points[i].y, profiles[k].points[i].z);
   }
-  Plane plane = LeastMedian(points);
-  std::vector<double> distances;
-  double within = 0;
-  for (int round = 0; round < 3; ++round) {
-    distances = Distances(plane, points);
-    within = std::max(kOff * Median(distances), kRounding_mm);
-    std::vector<size_t> on;
-    for (size_t k = 0; k < points.size(); ++k)
-      if (distances[k] <= within) on.push_back(k);
-    plane = FitPlane(points, on);
+  std::vector<size_t> on(points.size());
+  std::iota(on.begin(), on.end(), 0);
+  std::vector<bool> off(profiles.size(), false);
+  if (profiles.size() >= kFewest) {
+    RobustPlane plane = LeastMedian(points);
+    for (int round = 0; round < 4; ++round) {
+      const std::vector<double> distances = Distances(plane, points);
+      const double within = std::max(kOffPlane * Median(distances), kRounding_mm);
+      on.clear();
+      for (size_t k = 0; k < points.size(); ++k) {
+        off[order[k]] = distances[k] > within;
+        if (distances[k] <= within) on.push_back(k);
+      }
+      plane = FitPlane(points, on);
+    }
   }
-  distances = Distances(plane, points);
-  for (size_t k = 0; k < points.size(); ++k) off[order[k]] = distances[k] > within;
-  return off;
+  RobustPlane result = FitPlane(points, on);
+  result.off = std::move(off);
+  return result;
 }
 
 }  // namespace scancal

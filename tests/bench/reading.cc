@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+#include <glog/logging.h>
+#include <charconv>
+#include <fstream>
+#include <sstream>
+#include "io/scan_reader.h"
+#include "tests/bench/comparisons.h"
+
+namespace scancal::bench {
+namespace {
+
+// All numbers of the text, added up so that none is left out.
+double BareLoop(const std::string& text) {
+  const char* at = text.data() + text.find('\n') + 1;  // behind the names
+  const char* const end = text.data() + text.size();
+  double sum = 0;
+  while (at < end) {
+    double value = 0;
+    at = std::from_chars(at, end, value).ptr + 1;  // over the comma or the end of the line
+    sum += value;
+  }
+  return sum;
+}
+
+size_t ReadAll(const std::filesystem::path& file) {
+  ScanFormat format;
+  format.path = file;
+  format.columns = {{"angle", Dimension::kAngle}, {"y", Dimension::kLength}, {"z", Dimension::kLength}};
+  auto reader = ScanReader::Open(format);
+  CHECK(reader.ok()) << reader.error().message;
+  ScanBatch batch;
+  size_t points = 0;
+  for (;;) {
+    const auto more = reader->Next(&batch);
+    CHECK(more.ok()) << more.error().message;
+    if (!*more) return points;
+    points += batch.size();
+  }
+}
+
+std::string Rate(double bytes, double seconds) { return fmt::format("{:.0f} MB/s", bytes / seconds / 1e6); }
+
+}  // namespace
+
+void CompareReading(const std::filesystem::path& folder, Table* table) {
+  Say("reading CSV");
+  TurntableScene scene = LargeScene();
+  scene.placements = 1;
+  scene.profiles = 3500;
+  const auto written = WriteSimulatedTurntable(scene, ScanFileFormat::kCsv, folder);
+  CHECK(written.ok()) << written.error().message;
+  const std::filesystem::path file = folder / "placement_1.csv";
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();  // which also brings it into the page cache
+  const std::string bytes = text.str();
+
+  size_t points = 0;
+  const double ours_s = MedianSecondsOf([&] { points = ReadAll(file); });
+  volatile double keep = 0;
+  const double bare_s = MedianSecondsOf([&] { keep = BareLoop(bytes); });
+  CHECK_EQ(points, static_cast<size_t>(scene.profiles) * static_cast<size_t>(scene.points));
+  const auto size = static_cast<double>(bytes.size());
+  const double ratio = bare_s / ours_s;
+  table->Add({"reading CSV, against a bare from_chars loop over the same bytes", Rate(size, ours_s), Rate(size, bare_s),
+              Ratio(ratio), "at least 0.8", ratio >= 0.8 ? "yes" : "NO"});
+  table->Note(
+      fmt::format("CSV: angle, y, z of {:.1f} million points, {:.0f} MB in the page cache; the bare loop has them "
+                  "in its own memory, ours opens and reads the file.",
+                  static_cast<double>(points) / 1e6, size / 1e6));
+}
+
+}  // namespace scancal::bench
