@@ -5,11 +5,16 @@
 
 namespace scancal {
 
+struct CommandFlag {
+  const char* name;
+  const char* meaning = nullptr;  // where several commands share the flag; else its own description
+};
+
 struct Command {
   const char* name;
   const char* arguments;                                  // "DATASET"
   const char* summary;                                    // one line
-  std::vector<const char*> flags;                         // its own, in the order of its help
+  std::vector<CommandFlag> flags;                         // its own, in the order of its help
   int (*run)(const std::vector<std::string>& arguments);  // exit code
 };
 

@@ -29,7 +29,7 @@ int Run(const std::vector<std::string>& arguments) {
 const Command kCompareCommand = {"compare",
                                  "DATASET",
                                  "the published grid search and the joint refinements on the same data, one table",
-                                 {"surface"},
+                                 {{"surface"}},
                                  &Run};
 
 }  // namespace scancal

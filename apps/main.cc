@@ -1,4 +1,5 @@
 // scancal: calibration of 3D scanners from geometric targets.
+#include <fmt/format.h>
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 #include <algorithm>
@@ -25,22 +26,25 @@ void PrintOverview() {
 
 void PrintHelp(const Command& command) {
   std::printf("usage: scancal %s %s [flags]\n\n%s\n\n", command.name, command.arguments, command.summary);
-  for (const char* name : command.flags) {
-    const auto info = gflags::GetCommandLineFlagInfoOrDie(name);
-    const std::string preset = info.default_value.empty() ? "" : " (default " + info.default_value + ")";
+  for (const CommandFlag& flag : command.flags) {
+    const auto info = gflags::GetCommandLineFlagInfoOrDie(flag.name);
+    // gflags prints doubles with 17 digits.
+    const std::string preset =
+        info.type == "double" ? fmt::format("{}", std::stod(info.default_value)) : info.default_value;
     const std::string shown = info.type == "bool" ? info.name : info.name + "=" + info.type;
-    std::printf("  --%-28s %s%s\n", shown.c_str(), info.description.c_str(), preset.c_str());
+    fmt::print("  --{:<24} {}{}\n", shown, flag.meaning ? flag.meaning : info.description,
+               preset.empty() ? "" : " (default " + preset + ")");
   }
 }
 
 bool Has(const Command& command, const std::string& flag) {
-  return std::find(command.flags.begin(), command.flags.end(), flag) != command.flags.end();
+  return std::any_of(command.flags.begin(), command.flags.end(), [&](const auto& own) { return own.name == flag; });
 }
 
 // A flag that belongs to another command would be ignored: say so.
 int RefuseForeignFlags(const Command& command) {
   for (const Command* other : kCommands)
-    for (const char* flag : other->flags)
+    for (const auto& [flag, meaning] : other->flags)
       if (!Has(command, flag) && !gflags::GetCommandLineFlagInfoOrDie(flag).is_default)
         return Complain(std::string("--") + flag + " is no flag of " + command.name + "; see scancal " + command.name +
                         " --help");

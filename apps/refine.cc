@@ -9,8 +9,7 @@
 #include "report/calibration_json.h"
 #include "report/text.h"
 
-DEFINE_string(out, "",
-              "folder (refine, simulate) or file (transform) to write; default: the current folder for refine");
+DEFINE_string(out, "", "folder or file to write");
 DEFINE_string(residual, "depth",
               "depth (measured depth minus the depth that the model predicts) or plane (plain "
               "point-to-plane, biased)");
@@ -42,10 +41,11 @@ int Run(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-const Command kRefineCommand = {"refine",
-                                "DATASET",
-                                "calibrate: search, joint refinement, uncertainty; writes calibration.json",
-                                {"out", "residual", "max_iterations"},
-                                &Run};
+const Command kRefineCommand = {
+    "refine",
+    "DATASET",
+    "calibrate: search, joint refinement, uncertainty; writes calibration.json",
+    {{"out", "folder for calibration.json (default: the current one)"}, {"residual"}, {"max_iterations"}},
+    &Run};
 
 }  // namespace scancal

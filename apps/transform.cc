@@ -40,7 +40,7 @@ const Command kTransformCommand = {
     "transform",
     "DATASET",
     "the scans as one point cloud in the table frame: .ply, .csv or .npy by the name of --out",
-    {"calibration", "out"},
+    {{"calibration"}, {"out", "point cloud to write: a name that ends in .ply, .csv or .npy"}},
     &Run};
 
 }  // namespace scancal

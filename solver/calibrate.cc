@@ -1,5 +1,6 @@
 #include "solver/calibrate.h"
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include "solver/uncertainty/covariance.h"
 #include "solver/uncertainty/coverage.h"
@@ -54,6 +55,14 @@ Eigen::MatrixXd Headline(const Eigen::MatrixXd& clustered, const Budget& budget)
 
 std::vector<double> Plain(const Eigen::VectorXd& x) { return {x.data(), x.data() + x.size()}; }
 std::vector<double> Deviations(const Eigen::MatrixXd& covariance) { return Plain(covariance.diagonal().cwiseSqrt()); }
+
+std::string LeastDetermined(const std::map<std::string, double>& direction) {
+  const auto worst = std::max_element(direction.begin(), direction.end(), [](const auto& a, const auto& b) {
+    return std::abs(a.second) < std::abs(b.second);
+  });
+  if (worst == direction.end()) return "";
+  return "; " + worst->first + " is least determined: allow more iterations, hold it or give it a prior";
+}
 
 void AddBudget(const Solution& solution, const Eigen::MatrixXd& clustered, const Budget& budget, Calibration* result) {
   result->budget.push_back({"residuals, clustered by view", Unit::kMm, result->sigma, {}, Deviations(clustered)});
@@ -156,7 +165,9 @@ Calibration Summarize(const Solution& solution, double sigma, const PureError& p
                     "the naive uncertainty "
                     "is too small, the clustered one allows for it if it differs from view to view",
                     result.lack_of_fit.F, result.lack_of_fit.p));
-  if (!solution.fit.converged) result.unreliable.push_back("the refinement did not converge: " + solution.fit.message);
+  if (!solution.fit.converged)
+    result.unreliable.push_back("the refinement did not converge: " + solution.fit.message +
+                                LeastDetermined(result.weakest));
   return result;
 }
 

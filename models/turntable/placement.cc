@@ -173,7 +173,7 @@ std::vector<Turntable::View> Views(const std::vector<Profile>& profiles, Turntab
   return views;
 }
 
-Result<void> CheckPlausible(const std::vector<Placement>& placements) {
+Result<void> CheckPlausible(const std::vector<Placement>& placements, const Units& units) {
   double widest = 0, largest = 0;
   for (const Placement& placement : placements) {
     const double sweep = placement.Sweep();
@@ -182,19 +182,19 @@ Result<void> CheckPlausible(const std::vector<Placement>& placements) {
     if (sweep > std::numbers::pi)
       return Error{
           fmt::format("target {}: its angles span {:.4g} rad ({:.4g} deg), but a plane is seen over less than half "
-                      "a turn; are the angles degrees, declared as rad?",
-                      placement.name, sweep, sweep / kDegree)};
+                      "a turn; is units: angle: {} right (degrees declared as rad?)",
+                      placement.name, sweep, sweep / kDegree, units.angle)};
     if (placement.largest > kImplausibleLength_mm)
       return Error{
-          fmt::format("target {}: found a coordinate of {:.4g} m, expected less than {:g} m; is units: length: "
+          fmt::format("target {}: found a coordinate of {:.4g} m, expected less than {:g} m; is units: length: {} "
                       "right (mm declared as m?)",
-                      placement.name, placement.largest / 1000, kImplausibleLength_mm / 1000)};
+                      placement.name, placement.largest / 1000, kImplausibleLength_mm / 1000, units.length)};
   }
   if (largest < 1)
     return Error{
-        fmt::format("the largest coordinate is {:.4g} mm, expected the size of a plate; is units: length: right "
-                    "(m declared as mm?)",
-                    largest)};
+        fmt::format("the largest coordinate is {:.4g} mm, expected the size of a plate; is units: length: {} right "
+                    "(m declared as mm, mm as um?)",
+                    largest, units.length)};
   if (widest == 0)
     return Error{"M, N: not determined: every target has one angle only; the profiler must turn while it scans"};
   if (widest < kDegree)
@@ -202,6 +202,10 @@ Result<void> CheckPlausible(const std::vector<Placement>& placements) {
         fmt::format("the angles span {:.3g} deg, expected more than one; if the file holds radians (a sweep of "
                     "{:.3g} deg), declare angle: rad",
                     widest / kDegree, widest / kDegree / kDegree)};
+  for (const Placement& placement : placements)
+    if (placement.Sweep() == 0)
+      return Error{fmt::format("target {}: its plane is not determined: it needs profiles at two angles or more",
+                               placement.name)};
   return {};
 }
 

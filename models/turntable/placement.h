@@ -41,7 +41,7 @@ Placement CompressPlacement(const RawScan& scan, const TurntablePose& pose);
 std::vector<Turntable::View> Views(const std::vector<Profile>& profiles, Turntable::Residuals residuals);
 
 // Units and angles that cannot be: "angles span 30 rad ...; are they degrees?"
-Result<void> CheckPlausible(const std::vector<Placement>& placements);
+Result<void> CheckPlausible(const std::vector<Placement>& placements, const Units& units);
 
 // Compresses one profile's points; range: a lidar's, empty for a profiler.
 Profile CompressProfile(double alpha, std::span<const double> y, std::span<const double> z,

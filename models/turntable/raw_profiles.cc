@@ -88,8 +88,8 @@ Result<SensorColumns> ToSensor(const ScanDeclaration& scan, double sense, const 
     points.y = batch.columns[y];
     points.z = batch.columns[z];
   } else {
-    return Error{scan.format.path.string() + ": found columns " + Listed(batch.names) +
-                 ", expected angle with y and z, or with bearing and range"};
+    return Error{scan.format.path.string() + ": of the columns that are known, found only " + Listed(batch.names) +
+                 "; expected angle with y and z, or with bearing and range, in lower case"};
   }
   return points;
 }

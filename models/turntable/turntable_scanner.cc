@@ -11,6 +11,7 @@ namespace scancal {
 namespace {
 
 constexpr int kRoundsOfReading = 4;
+constexpr double kLeastSigma_mm = 1e-9;  // noiseless data need a scale too
 
 TurntablePose PoseOf(const Quantities& quantities) {
   return {quantities[Turntable::kM].value,      quantities[Turntable::kN].value,
@@ -100,10 +101,10 @@ TurntableFit TurntableScanner::Fit(const TurntablePose& pose, Turntable::Residua
   std::vector<Placement> placements = placements_;
   if (without) placements.erase(placements.begin() + static_cast<std::ptrdiff_t>(*without));
   const std::vector<PlaneStorey> storeys = Storeys(placements, pose);
-  double rms = 1e-9;  // mm: noiseless data need a scale too
+  double rms = kLeastSigma_mm;
   for (const PlaneStorey& storey : storeys) rms = std::max(rms, storey.Rmse(pose.M, pose.N, PlaneFit::kOrthogonal));
   const double pure = Pooled(placements).sigma();
-  fit.sigma = residuals == Turntable::Residuals::kDepth && pure > 0 ? pure : rms;
+  fit.sigma = residuals == Turntable::Residuals::kDepth && pure > kLeastSigma_mm ? pure : rms;
   const auto model = std::make_shared<Turntable>(residuals);
   for (int k = 0; k < std::ssize(model_.quantities()); ++k) model->quantity(k) = model_.quantities()[k];
   for (const int k : estimate) model->quantity(k).role = Role::kEstimate;
@@ -199,7 +200,7 @@ Result<std::unique_ptr<Scanner>> LoadTurntable(const Dataset& dataset) {
     std::vector<Placement> placements;
     for (const RawScan& scan : scans) placements.push_back(CompressPlacement(scan, pose));
     if (scanner && SamePoints(placements, scanner->placements())) break;
-    SCANCAL_RETURN_IF_ERROR(CheckPlausible(placements));
+    SCANCAL_RETURN_IF_ERROR(CheckPlausible(placements, dataset.units));
     scanner = std::make_unique<TurntableScanner>(declaration, model, std::move(placements));
     const Result<TurntableStart> start = scanner->Initialize();
     if (!start.ok()) break;  // Calibrate will say so

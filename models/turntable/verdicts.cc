@@ -64,7 +64,8 @@ void JudgeSearch(const GridBox& box, const TurntableStart& start, Calibration* c
   for (const size_t k : {0, 1}) {
     const Parameter* p = calibration->Find(k == 0 ? "M" : "N");
     if (p->role == Role::kEstimate && (p->value < box.lower[k] || p->value > box.upper[k]) && !start.grid.best.on_edge)
-      calibration->warnings.push_back(p->name + fmt::format(" = {:g} mm lies outside the search interval", p->value));
+      calibration->unreliable.push_back(fmt::format(
+          "{} = {:.6g} mm lies outside the search interval; widen search:, or look at the scans", p->name, p->value));
   }
 }
 

@@ -26,6 +26,8 @@ Result<void> CheckScene(const TurntableScene& scene, const std::vector<Simulated
 Result<void> CheckNumbers(const TurntableScene& scene) {
   const auto is_share = [](double share) { return share >= 0 && share < 1; };
   const auto not_negative = [](double x) { return x >= 0 && std::isfinite(x); };
+  for (const double number : {scene.pose.M, scene.pose.N, scene.pose.tilt_x, scene.pose.tilt_y})
+    if (!std::isfinite(number)) return Error{"M, N and tilts: expected finite numbers"};
   if (scene.placements < 1 || scene.profiles < 1 || scene.points < 1)
     return Error{"placements, profiles and points: expected one or more of each"};
   if (!is_share(scene.outliers) || !is_share(scene.missing))

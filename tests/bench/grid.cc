@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include "models/turntable/zhao_2021.h"
 #include "tests/bench/comparisons.h"

@@ -1,5 +1,4 @@
-// scancal_bench FOLDER [SCIPY_SCRIPT]: the comparisons of the README, each side measured in this run. See
-// scripts/bench.
+// scancal_bench FOLDER [SCIPY_SCRIPT]: the comparisons of the README, measured side by side. See scripts/bench.
 #include <fmt/format.h>
 #include <glog/logging.h>
 #include <fstream>
@@ -18,8 +17,9 @@ std::string Processor() {
 
 void Run(const std::filesystem::path& folder, const std::filesystem::path& scipy_script) {
   Table table;
-  table.Note("Times are processor seconds, one thread on either side.");
-  // First, while the memory is fresh: what the large data leave behind would slow neither side alike.
+  table.Note(
+      "Times are processor seconds (those of the two threads that search the grid within \"everything after reading\" "
+      "add up), one thread on either side of all else.");
   CompareCompression(&table);
   CompareReading(folder, &table);
   CompareScaling(&table);

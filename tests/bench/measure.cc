@@ -16,7 +16,7 @@ namespace scancal::bench {
 namespace {
 
 constexpr double kMegabyte = 1e6;
-constexpr int kFewestRepetitions = 5, kMostRepetitions = 1000;
+constexpr int kFewestRounds = 9, kMostRounds = 1000;
 constexpr double kEnoughSeconds = 0.3;
 
 double ResidentMegabytes() {
@@ -50,18 +50,22 @@ double SecondsOf(const std::function<void()>& work) {
   return ProcessorSeconds() - began;
 }
 
-double MedianSecondsOf(const std::function<void()>& work) {
-  work();  // once unmeasured: pages and caches as they will be
-  std::vector<double> seconds;
-  double sum = 0;
-  while (std::ssize(seconds) < kFewestRepetitions || (sum < kEnoughSeconds && std::ssize(seconds) < kMostRepetitions)) {
-    seconds.push_back(SecondsOf(work));
-    sum += seconds.back();
+std::vector<double> MedianSecondsOf(const std::vector<std::function<void()>>& works) {
+  for (const auto& work : works) work();  // once unmeasured: pages and caches as they will be
+  std::vector<std::vector<double>> seconds(works.size());
+  const double enough = ProcessorSeconds() + kEnoughSeconds * static_cast<double>(works.size());
+  for (int round = 0; round < kFewestRounds || (round < kMostRounds && ProcessorSeconds() < enough); ++round)
+    for (size_t k = 0; k < works.size(); ++k) seconds[k].push_back(SecondsOf(works[k]));
+  std::vector<double> medians;
+  for (auto& list : seconds) {
+    const auto middle = list.begin() + std::ssize(list) / 2;
+    std::nth_element(list.begin(), middle, list.end());
+    medians.push_back(*middle);
   }
-  const auto middle = seconds.begin() + std::ssize(seconds) / 2;
-  std::nth_element(seconds.begin(), middle, seconds.end());
-  return *middle;
+  return medians;
 }
+
+double MedianSecondsOf(const std::function<void()>& work) { return MedianSecondsOf(std::vector{work}).front(); }
 
 ChildRun RunInChild(const std::function<std::vector<double>()>& work) {
   std::fflush(nullptr);

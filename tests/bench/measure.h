@@ -10,7 +10,9 @@ namespace scancal::bench {
 double ProcessorSeconds();
 
 double SecondsOf(const std::function<void()>& work);  // once
-// Median of at least five repetitions, of as many as fit into a third of a second.
+// Medians of several works that take turns, so that whatever slows the machine for a while slows all of them: at least
+// nine rounds, and as many as fit into a third of a second for each.
+std::vector<double> MedianSecondsOf(const std::vector<std::function<void()>>& works);
 double MedianSecondsOf(const std::function<void()>& work);
 
 struct ChildRun {

@@ -80,7 +80,7 @@ PerPointFit FitPerPoint(const std::vector<SimulatedPlacement>& points, const Sta
     });
   }
   ceres::Solver::Options options;
-  // The fastest of Ceres' linear solvers here: 6.8 s where DENSE_SCHUR and the sparse ones took 8.4 s, DENSE_QR 13 s.
+  // The fastest of Ceres' linear solvers here; DENSE_SCHUR, the sparse ones and DENSE_QR took longer, in this order.
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = 1e-12;
   options.max_num_iterations = 100;

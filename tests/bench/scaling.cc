@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include "models/turntable/turntable_scanner.h"
 #include "solver/random.h"
 #include "tests/bench/comparisons.h"
@@ -40,46 +42,61 @@ std::vector<Placement> MakeCompressed(int profiles_per_placement, int points_per
 }
 
 // Everything between reading and the report: the grid at step 1, the refinement, all uncertainties.
-double CalibrationSeconds(const std::vector<Placement>& placements) {
-  TurntableDeclaration declaration;
-  declaration.search = {{110, 395}, {130, 425}, 1};
-  const TurntableScanner scanner(declaration, Turntable(Turntable::Residuals::kDepth), placements);
-  return MedianSecondsOf([&] {
-    const Result<Calibration> calibration = scanner.Calibrate({});
-    CHECK(calibration.ok()) << calibration.error().message;
-    CHECK(calibration->converged);
-  });
+std::vector<double> CalibrationSeconds(const std::vector<std::vector<Placement>>& cases) {
+  std::vector<std::function<void()>> works;
+  for (const std::vector<Placement>& placements : cases) {
+    TurntableDeclaration declaration;
+    declaration.search = {{110, 395}, {130, 425}, 1};
+    const auto scanner =
+        std::make_shared<const TurntableScanner>(declaration, Turntable(Turntable::Residuals::kDepth), placements);
+    works.emplace_back([scanner] {
+      const Result<Calibration> calibration = scanner->Calibrate({});
+      CHECK(calibration.ok()) << calibration.error().message;
+      CHECK(calibration->converged);
+    });
+  }
+  return MedianSecondsOf(works);
+}
+
+void ComparePoints(Table* table) {
+  Say("everything after reading: more points");
+  constexpr int kProfiles = 600;
+  constexpr std::array kPowers = {4, 5, 6, 7};
+  std::vector<std::vector<Placement>> cases;
+  for (const int power : kPowers)
+    cases.push_back(MakeCompressed(kProfiles / kPlacements, static_cast<int>(std::pow(10, power) / kProfiles)));
+  const std::vector<double> seconds = CalibrationSeconds(cases);
+  for (size_t k = 0; k < kPowers.size(); ++k)
+    table->Add({fmt::format("after reading, {} profiles, about 10^{} points; other: 10^4", kProfiles, kPowers[k]),
+                Seconds(seconds[k]), Seconds(seconds[0]), Ratio(seconds[k] / seconds[0]), "", ""});
+  const auto [least, most] = std::minmax_element(seconds.begin(), seconds.end());
+  table->AddAtMost("... flat in the points: slowest / fastest", Seconds(*most), Seconds(*least), Ratio(*most / *least),
+                   *most / *least, 1.5);
+}
+
+void CompareProfiles(Table* table) {
+  Say("everything after reading: more profiles");
+  constexpr std::array kProfiles = {150, 300, 600, 1200, 2400, 4800};
+  std::vector<std::vector<Placement>> cases;
+  for (const int profiles : kProfiles) cases.push_back(MakeCompressed(profiles / kPlacements, 100));
+  const std::vector<double> seconds = CalibrationSeconds(cases);
+  std::vector<double> each;
+  for (size_t k = 0; k < kProfiles.size(); ++k) {
+    each.push_back(seconds[k] / kProfiles[k]);
+    table->Add(
+        {fmt::format("after reading, {} profiles, {}; per profile; other: 150", kProfiles[k], Seconds(seconds[k])),
+         Seconds(each[k]), Seconds(each[0]), Ratio(each[k] / each[0]), "", ""});
+  }
+  const double least = *std::min_element(each.begin(), each.end()), growth = each.back() / least;
+  table->AddAtMost("... linear in the profiles: each of 4800 / cheapest", Seconds(each.back()), Seconds(least),
+                   Ratio(growth), growth, 1.5);
 }
 
 }  // namespace
 
 void CompareScaling(Table* table) {
-  Say("everything after reading: more points");
-  constexpr int kProfiles = 600;
-  std::vector<double> seconds;
-  for (const double points : {1e4, 1e5, 1e6, 1e7}) {
-    const int per_profile = static_cast<int>(std::lround(points / kProfiles));
-    seconds.push_back(CalibrationSeconds(MakeCompressed(kProfiles / kPlacements, per_profile)));
-    table->Add({fmt::format("everything after reading, {} profiles, about 10^{:.0f} points (other: 10^4)", kProfiles,
-                            std::log10(points)),
-                Seconds(seconds.back()), Seconds(seconds.front()), Ratio(seconds.back() / seconds.front()), "", ""});
-  }
-  const auto [least, most] = std::minmax_element(seconds.begin(), seconds.end());
-  table->AddAtMost("... flat in the points: slowest / fastest", Seconds(*most), Seconds(*least), Ratio(*most / *least),
-                   *most / *least, 1.5);
-
-  Say("everything after reading: more profiles");
-  std::vector<double> per_profile;
-  for (const int profiles : {150, 300, 600, 1200, 2400, 4800}) {
-    seconds.push_back(CalibrationSeconds(MakeCompressed(profiles / kPlacements, 100)));
-    per_profile.push_back(seconds.back() / profiles);
-    table->Add({fmt::format("everything after reading, {} profiles; per profile (other: 150)", profiles),
-                Seconds(seconds.back()) + "; " + Seconds(per_profile.back()), Seconds(per_profile.front()),
-                Ratio(per_profile.back() / per_profile.front()), "", ""});
-  }
-  const double growth = per_profile.back() / *std::min_element(per_profile.begin(), per_profile.end());
-  table->AddAtMost("... linear in the profiles: per profile, 4800 / cheapest", Seconds(per_profile.back()),
-                   Seconds(*std::min_element(per_profile.begin(), per_profile.end())), Ratio(growth), growth, 1.5);
+  ComparePoints(table);
+  CompareProfiles(table);
   table->Note("After reading: grid at step 1 (651 nodes), depth residual, linearization, all covariances, jackknife.");
 }
 

@@ -1,0 +1,149 @@
+// What the program says of itself, and to flags that it does not have.
+#include <gmock/gmock.h>
+#include <regex>
+#include <set>
+#include "tests/cli/data_set.h"
+
+namespace scancal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::UnorderedElementsAre;
+
+class FlagsTest : public CliTest {};
+
+// The flags that a help text lists, in order.
+std::vector<std::string> FlagsIn(const std::string& help) {
+  std::vector<std::string> flags;
+  const std::regex flag("^  --(\\w+)");
+  for (const std::string& line : Lines(help)) {
+    std::smatch match;
+    if (std::regex_search(line, match, flag)) flags.push_back(match[1]);
+  }
+  return flags;
+}
+
+std::vector<std::string> HelpFlags(const std::string& command) {
+  const Outcome outcome = RunScancal({command, "--help"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_THAT(outcome.out, HasSubstr("usage: scancal " + command));
+  return FlagsIn(outcome.out);
+}
+
+TEST(HelpTest, WithoutArgumentsTheCommandsAreListed) {
+  const Outcome outcome = RunScancal({});
+  EXPECT_EQ(outcome.exit_code, 1);
+  for (const char* command : {"refine", "compare", "simulate", "transform"})
+    EXPECT_THAT(outcome.out, HasSubstr("\n  " + std::string(command) + " "));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("--flagfile")));
+}
+
+TEST(HelpTest, HelpIsNoError) {
+  const Outcome outcome = RunScancal({"--help"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.out, RunScancal({}).out);
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST(HelpTest, VersionIsOneLine) {
+  const Outcome outcome = RunScancal({"--version"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(std::regex_match(outcome.out, std::regex("scancal \\d+\\.\\d+\\.\\d+\n"))) << outcome.out;
+}
+
+TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
+  EXPECT_THAT(HelpFlags("refine"), ElementsAre("out", "residual", "max_iterations"));
+  EXPECT_THAT(HelpFlags("compare"), ElementsAre("surface"));
+  EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out"));
+  EXPECT_THAT(HelpFlags("simulate"),
+              UnorderedElementsAre("out", "M", "N", "tilt_x", "tilt_y", "placements", "profiles", "points", "sweep",
+                                   "line_length", "noise", "line_correlation", "encoder_jitter", "form", "outliers",
+                                   "missing", "search_width_M", "search_width_N", "seed", "format"));
+}
+
+TEST(HelpTest, FlagsHaveUnitsAndDefaults) {
+  const std::string help = RunScancal({"simulate", "--help"}).out;
+  for (const auto& [flag, unit, preset] :
+       {std::tuple{"M", "mm", "123"}, std::tuple{"N", "mm", "409"}, std::tuple{"tilt_x", "deg", "0"},
+        std::tuple{"sweep", "deg", "30"}, std::tuple{"line_length", "mm", "200"}, std::tuple{"noise", "mm", "0.05"},
+        std::tuple{"encoder_jitter", "deg", "0"}, std::tuple{"line_correlation", "points", "1"}}) {
+    const std::regex line(std::string("  --") + flag + "=double +.*\\b" + unit + "\\b.*\\(default " + preset + "\\)");
+    EXPECT_TRUE(std::regex_search(help, line)) << flag << ": expected " << unit << ", default " << preset << "\n"
+                                               << help;
+  }
+  EXPECT_THAT(RunScancal({"refine", "--help"}).out, AllOf(HasSubstr("(default depth)"), HasSubstr("(default 100)")));
+}
+
+TEST(HelpTest, AnUnknownCommandIsNamed) {
+  const Outcome outcome = RunScancal({"refin"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(OneSentence(outcome), HasSubstr("\"refin\""));
+}
+
+TEST_F(FlagsTest, AnUnknownFlagIsNamed) {
+  const Outcome outcome = Refine(MakeData(), {"--max_iteration=3"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("'max_iteration'"));
+  EXPECT_EQ(Lines(outcome.err).size(), 1U) << outcome.err;
+  EXPECT_FALSE(fs::exists(Path("out")));
+}
+
+TEST_F(FlagsTest, AFlagOfAnotherCommandIsRefused) {
+  const fs::path data = MakeData();
+  for (const char* flag : {"--sweep=20", "--sweep=30", "--surface=s.csv", "--calibration=c.json", "--seed=1"}) {
+    const Outcome outcome = Refine(data, {flag});
+    EXPECT_EQ(outcome.exit_code, 1) << flag;
+    const std::string name = std::string(flag).substr(0, std::string(flag).find('='));
+    EXPECT_THAT(OneSentence(outcome), AllOf(HasSubstr(name + " "), HasSubstr("refine")));
+  }
+  EXPECT_EQ(RunScancal({"compare", data.string(), "--max_iterations=3"}).exit_code, 1);
+  EXPECT_EQ(RunScancal({"transform", data.string(), "--out=x.ply", "--residual=plane"}).exit_code, 1);
+  EXPECT_EQ(RunScancal({"simulate", "--residual=plane", "--out=" + Path("x").string()}).exit_code, 1);
+  EXPECT_FALSE(fs::exists(Path("x")));
+  EXPECT_FALSE(fs::exists(Path("out")));
+}
+
+TEST_F(FlagsTest, AMissingOrSecondArgumentIsRefused) {
+  const std::string data = MakeData().string();
+  for (const char* command : {"refine", "compare"}) {
+    const Outcome none = RunScancal({command}), two = RunScancal({command, data, data});
+    EXPECT_EQ(none.exit_code, 1);
+    EXPECT_EQ(two.exit_code, 1);
+    EXPECT_THAT(OneSentence(none), AllOf(HasSubstr("found 0 arguments"), HasSubstr("the folder of a data set")));
+    EXPECT_THAT(OneSentence(two), HasSubstr("found 2 arguments"));
+  }
+  EXPECT_THAT(OneSentence(RunScancal({"transform", data})), HasSubstr("--out: expected a file name that ends in .ply"));
+  EXPECT_THAT(OneSentence(RunScancal({"transform", "--out=x.ply"})), HasSubstr("found 0 arguments"));
+  EXPECT_THAT(OneSentence(RunScancal({"simulate"})), HasSubstr("--out: expected the folder"));
+  EXPECT_THAT(OneSentence(RunScancal({"simulate", data})), HasSubstr("takes no argument"));
+}
+
+TEST_F(FlagsTest, AFlagWithAWrongValueIsRefused) {
+  const fs::path data = MakeData();
+  const std::string out = "--out=" + Path("x").string();
+  EXPECT_THAT(OneSentence(Refine(data, {"--residual=deep"})),
+              AllOf(HasSubstr("\"deep\""), HasSubstr("depth or plane")));
+  EXPECT_THAT(OneSentence(Refine(data, {"--max_iterations=0"})), HasSubstr("--max_iterations: expected 1 or more"));
+  EXPECT_THAT(OneSentence(RunScancal({"simulate", out, "--format=xls"})),
+              AllOf(HasSubstr("\"xls\""), HasSubstr("csv or npy")));
+  for (const char* flag : {"--profiles=0", "--points=-1", "--placements=0", "--sweep=180", "--sweep=-1", "--noise=-1",
+                           "--noise=nan", "--outliers=1", "--missing=-0.1", "--line_length=0", "--line_correlation=0.5",
+                           "--search_width_M=0", "--M=nan", "--N=inf", "--tilt_x=nan"}) {
+    const Outcome outcome = RunScancal({"simulate", out, "--profiles=3", "--points=3", flag});
+    EXPECT_EQ(outcome.exit_code, 1) << flag;
+    const std::string name = std::string(flag).substr(2, std::string(flag).find('=') - 2);
+    EXPECT_EQ(Lines(outcome.err).size(), 1U) << flag << ": " << outcome.err;
+    EXPECT_FALSE(fs::exists(Path("x"))) << flag;
+    fs::remove_all(Path("x"));
+  }
+  EXPECT_THAT(RunScancal({"simulate", out, "--profiles=many"}).err,
+              AllOf(HasSubstr("'many'"), HasSubstr("'profiles'")));
+  EXPECT_FALSE(fs::exists(Path("x")));
+}
+
+}  // namespace
+}  // namespace scancal

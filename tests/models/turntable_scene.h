@@ -1,0 +1,74 @@
+// Simulated turntable scenes as problems, without files.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+#include "models/turntable.h"
+#include "models/turntable/placement.h"
+#include "models/turntable/simulate.h"
+#include "solver/model.h"
+
+namespace scancal {
+
+struct PoseAsProblem {
+  Turntable::Residuals residuals = Turntable::Residuals::kDepth;
+  bool compressed = true;
+  bool reversed = false;
+  double scale_y_error = 0;  // the profiler shows y / (1 + this)
+};
+
+inline std::vector<Profile> Compress(const SimulatedPlacement& placement) {
+  std::vector<Profile> profiles;
+  for (const SimulatedProfile& raw : placement.profiles)
+    profiles.push_back(CompressProfile(raw.alpha, raw.y, raw.z, {}));
+  return profiles;
+}
+
+// Targets at the true planes, turned a little so that nothing starts at the solution.
+inline std::vector<Turntable::Target> MakeTargets(std::vector<SimulatedPlacement> placements, const PoseAsProblem& as) {
+  std::vector<Turntable::Target> targets;
+  for (SimulatedPlacement& placement : placements) {
+    for (SimulatedProfile& profile : placement.profiles) {
+      for (double& y : profile.y) y /= 1 + as.scale_y_error;
+      if (as.reversed) {
+        std::reverse(profile.y.begin(), profile.y.end());
+        std::reverse(profile.z.begin(), profile.z.end());
+      }
+    }
+    Turntable::Target& target = targets.emplace_back();
+    target.name = placement.name;
+    Turntable::SetPlane(placement.normal + Eigen::Vector3d(1e-3, -2e-3, 1e-3), placement.distance + 0.3, &target);
+    if (as.compressed) {
+      target.views = Views(Compress(placement), as.residuals);
+    } else {
+      for (const SimulatedProfile& profile : placement.profiles) {
+        Turntable::View& view = target.views.emplace_back();
+        view.alpha = profile.alpha;
+        view.count = static_cast<double>(profile.y.size());
+        for (size_t i = 0; i < profile.y.size(); ++i) view.points.push_back({1, profile.y[i], profile.z[i]});
+      }
+    }
+    if (as.reversed) std::reverse(target.views.begin(), target.views.end());
+  }
+  if (as.reversed) std::reverse(targets.begin(), targets.end());
+  return targets;
+}
+
+// M and N start half a millimetre from the truth.
+inline Estimate StartNear(const Problem& problem, const TurntablePose& truth) {
+  Estimate start = NominalStart(problem);
+  const std::vector<int> system = problem.With({Scope::kSystem}, Role::kEstimate);
+  for (size_t k = 0; k < system.size(); ++k) {
+    if (system[k] == Turntable::kM) start.system[static_cast<Eigen::Index>(k)] = truth.M + 0.5;
+    if (system[k] == Turntable::kN) start.system[static_cast<Eigen::Index>(k)] = truth.N - 0.5;
+  }
+  return start;
+}
+
+inline Problem MakeTurntableProblem(const TurntableScene& scene, const PoseAsProblem& as, Turntable model) {
+  return MakeProblem<Turntable>(std::make_shared<const Turntable>(std::move(model)),
+                                MakeTargets(SimulateTurntable(scene), as));
+}
+
+}  // namespace scancal
