@@ -92,7 +92,8 @@ void Turntable::Residual(const Target& plane, const View& profile, const Seen<T>
   const T by = m[0] * (sy * sx) + m[1] * cx + m[2] * (cy * sx);
   const T bz = m[0] * (sy * cx) - m[1] * sx + m[2] * (cy * cx);
   const T b0 = m[1] * q[kN] - m[0] * q[kM] - (plane.distance + q[kDistance]);
-  const T along_noise = profile.along_range ? -b0 : by;  // n . dP/dnoise of a row of weight one
+  // n . dP/dnoise of a row of weight one. With the scale, or the noise itself would prefer a small one.
+  const T along_noise = profile.along_range ? -b0 : by * (1.0 + q[kScaleY]);
   const T scale = residuals_ == Residuals::kDepth ? 1.0 / along_noise : T(1.0);
   for (int i = 0; i < Points(profile); ++i) {
     const PseudoPoint& p = profile.points[i];

@@ -100,7 +100,7 @@ Problem MakeProblem(const std::shared_ptr<const M>& model, std::vector<typename 
     Target& target = problem.targets.emplace_back();
     target.name = shared->name;
     for (const auto& view : shared->views)
-      target.views.push_back({std::make_shared<ModelRows<M>>(model, shared, std::vector{view}), {}, {}, {}});
+      target.views.push_back({std::make_shared<ModelRows<M>>(model, shared, std::vector{view}), 1, {}, {}, {}});
     if constexpr (HasNodes<M>) {
       const auto nodes = model->Nodes(*shared);
       if (nodes.empty()) continue;

@@ -24,12 +24,15 @@ class PriorRow final : public Rows {
   double value_;
 };
 
+double InverseDeviation(double sigma) { return Whitening(Eigen::MatrixXd::Constant(1, 1, sigma * sigma))(0, 0); }
+
 void MixNodes(Target* target) {
   if (!target->nodes.rows) return;
   TriangularFactor factor(target->nodes.rows->size());
   for (size_t v = 0; v < target->interpolation.size(); ++v) {
-    const Eigen::MatrixXd& mix = target->views[v].mix;
-    factor.Add(mix.size() ? Eigen::MatrixXd(mix * target->interpolation[v]) : target->interpolation[v]);
+    const Block& view = target->views[v];
+    factor.Add(view.weight *
+               (view.mix.size() ? Eigen::MatrixXd(view.mix * target->interpolation[v]) : target->interpolation[v]));
   }
   target->nodes.mix = factor.R();
 }
@@ -55,17 +58,22 @@ void Block::Evaluate(const double* q, std::span<const int> seeds, Eigen::VectorX
     *r = mix * *r;
     if (jacobian) *jacobian = mix * *jacobian;
   }
+  if (weight != 1) {
+    *r *= weight;
+    if (jacobian) *jacobian *= weight;
+  }
   if (offset.size()) *r += offset;
+}
+
+Eigen::MatrixXd Block::Weighted(const Eigen::Ref<const Eigen::MatrixXd>& left) const {
+  return mix.size() ? Eigen::MatrixXd(weight * left * mix) : Eigen::MatrixXd(weight * left);
 }
 
 void Problem::AddPriors() {
   for (int k : With({Scope::kSystem, Scope::kTarget}, Role::kEstimate)) {
     const Quantity& q = quantities[k];
     if (q.u <= 0) continue;
-    const Block prior{std::make_shared<PriorRow>(k, q.value),
-                      Whitening(Eigen::MatrixXd::Constant(1, 1, q.u * q.u)),
-                      {},
-                      "prior of " + q.Source()};
+    const Block prior{std::make_shared<PriorRow>(k, q.value), InverseDeviation(q.u), {}, {}, "prior of " + q.Source()};
     if (q.scope == Scope::kSystem) {
       priors.push_back(prior);
     } else {
@@ -77,8 +85,9 @@ void Problem::AddPriors() {
 void Problem::WeighEqually(double sigma) {
   for (Target& target : targets) {
     for (Block& view : target.views) {
-      const int n = view.rows->size();
-      if (view.prior.empty()) view.mix = Whitening(sigma * sigma * Eigen::MatrixXd::Identity(n, n));
+      if (!view.prior.empty()) continue;
+      view.weight = InverseDeviation(sigma);
+      view.mix.resize(0, 0);
     }
     MixNodes(&target);
   }

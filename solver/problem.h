@@ -53,14 +53,17 @@ class Rows {
                         double* jacobian) const = 0;
 };
 
-// residual = mix * r(q) + offset. An empty mix is the identity, an empty offset zero.
+// residual = weight * mix * r(q) + offset. An empty mix is the identity, an empty offset zero.
 struct Block {
   std::shared_ptr<const Rows> rows;
+  double weight = 1;
   Eigen::MatrixXd mix;
   Eigen::VectorXd offset;
   std::string prior;  // not empty: a prior of that name, with unit noise of its own
   int size() const { return static_cast<int>(mix.size() ? mix.rows() : rows->size()); }
   void Evaluate(const double* q, std::span<const int> seeds, Eigen::VectorXd* r, Eigen::MatrixXd* jacobian) const;
+  // weight * left * mix, rows x size() into rows x rows->size(): from the residual back to r(q).
+  Eigen::MatrixXd Weighted(const Eigen::Ref<const Eigen::MatrixXd>& left) const;
 };
 
 // The views of one target share its quantities. Where residuals are linear in a few known features, all views also

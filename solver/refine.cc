@@ -6,6 +6,7 @@ namespace scancal {
 namespace {
 
 constexpr int kPolishSteps = 10;
+constexpr double kNegligible = 1e-3;  // of a standard uncertainty
 
 // All rows of a target as Ceres sees them: a function of the system's estimated quantities and the target's own.
 class BlocksCost final : public ceres::CostFunction {
@@ -50,9 +51,30 @@ class BlocksCost final : public ceres::CostFunction {
   std::vector<double> values_;
 };
 
+// All estimated quantities in one piece, the targets' in order, the system's last: Ceres orders its blocks by their
+// addresses, and the order decides the last digits.
+class Parameters {
+ public:
+  explicit Parameters(const Estimate& x) : system_(x.system.size()), own_(x.targets.empty() ? 0 : x.targets[0].size()) {
+    for (const Eigen::VectorXd& own : x.targets) values_.insert(values_.end(), own.begin(), own.end());
+    values_.insert(values_.end(), x.system.begin(), x.system.end());
+  }
+  double* Own(size_t target) { return values_.data() + static_cast<Eigen::Index>(target) * own_; }
+  double* System() { return values_.data() + std::ssize(values_) - system_; }
+  void CopyTo(Estimate* x) {
+    for (size_t t = 0; t < x->targets.size(); ++t) x->targets[t] = Eigen::VectorXd::Map(Own(t), own_);
+    x->system = Eigen::VectorXd::Map(System(), system_);
+  }
+
+ private:
+  Eigen::Index system_, own_;
+  std::vector<double> values_;
+};
+
 ceres::Solver::Summary SolveByCeres(const Problem& problem, Storey storey, int max_iterations, Estimate* x) {
   const std::vector<int> system = problem.With({Scope::kSystem}, Role::kEstimate);
   const std::vector<int> own = problem.With({Scope::kTarget}, Role::kEstimate);
+  Parameters at(*x);
   ceres::Problem ceres_problem;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   for (size_t t = 0; t < problem.targets.size(); ++t) {
@@ -60,16 +82,16 @@ ceres::Solver::Summary SolveByCeres(const Problem& problem, Storey storey, int m
     const std::span<const Block> blocks =
         storey == Storey::kNodes ? std::span<const Block>(&target.nodes, 1) : std::span<const Block>(target.views);
     std::vector<double*> parameters;
-    if (!system.empty()) parameters.push_back(x->system.data());
-    if (!own.empty()) parameters.push_back(x->targets[t].data());
+    if (!system.empty()) parameters.push_back(at.System());
+    if (!own.empty()) parameters.push_back(at.Own(t));
     if (parameters.empty() || blocks.empty()) continue;
     ceres_problem.AddResidualBlock(new BlocksCost(problem, blocks, system, own), nullptr, parameters);
-    if (!own.empty()) ordering->AddElementToGroup(x->targets[t].data(), 0);
+    if (!own.empty()) ordering->AddElementToGroup(at.Own(t), 0);
   }
   if (!system.empty()) {
     if (!problem.priors.empty())
-      ceres_problem.AddResidualBlock(new BlocksCost(problem, problem.priors, system, {}), nullptr, x->system.data());
-    ordering->AddElementToGroup(x->system.data(), own.empty() ? 0 : 1);
+      ceres_problem.AddResidualBlock(new BlocksCost(problem, problem.priors, system, {}), nullptr, at.System());
+    ordering->AddElementToGroup(at.System(), own.empty() ? 0 : 1);
   }
   ceres::Solver::Options options;
   options.linear_solver_type = system.empty() || own.empty() ? ceres::DENSE_QR : ceres::DENSE_SCHUR;
@@ -80,6 +102,7 @@ ceres::Solver::Summary SolveByCeres(const Problem& problem, Storey storey, int m
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &ceres_problem, &summary);
+  at.CopyTo(x);
   return summary;
 }
 
@@ -130,9 +153,10 @@ Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& o
     Add(step, &next);
     Linearization there = Linearize(problem, next, storey);
     ++fit.iterations;
-    // In units of the uncertainty, |factor step| is the length of the step times the noise of one row.
+    // In units of the uncertainty, |factor step| is the length of the step times the noise of one row. Large residuals
+    // may keep Gauss-Newton from settling better than Levenberg-Marquardt did.
     const double noise = std::sqrt(linear.cost / std::max(1.0, problem.Count()));
-    const bool negligible = (linear.factor * step.system).norm() <= 1e-6 * noise;
+    const bool negligible = (linear.factor * step.system).norm() <= kNegligible * noise;
     const bool worse = !(there.cost <= linear.cost * (1 + 1e-9) + 1e-300);
     const bool tiny = IsTiny(step, next);
     fit.converged = tiny || (negligible && step.system.size() > 0);

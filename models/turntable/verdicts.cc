@@ -59,13 +59,14 @@ void JudgeSearch(const GridBox& box, const TurntableStart& start, Calibration* c
   if (start.grid.best.on_edge)
     calibration->unreliable.push_back(
         fmt::format("the grid minimum M = {:g}, N = {:g} mm lies on the edge of the search interval; "
-                    "widen search:",
+                    "widen search in dataset.yaml",
                     start.grid.best.at[0], start.grid.best.at[1]));
   for (const size_t k : {0, 1}) {
     const Parameter* p = calibration->Find(k == 0 ? "M" : "N");
     if (p->role == Role::kEstimate && (p->value < box.lower[k] || p->value > box.upper[k]) && !start.grid.best.on_edge)
       calibration->unreliable.push_back(fmt::format(
-          "{} = {:.6g} mm lies outside the search interval; widen search:, or look at the scans", p->name, p->value));
+          "{} = {:.6g} mm lies outside the search interval; widen search in dataset.yaml, or look at the scans",
+          p->name, p->value));
   }
 }
 

@@ -68,10 +68,10 @@ Budget Propagate(const Problem& problem, const Estimate& fit, const Linearizatio
         meat.Add(view.prior, Scope::kTarget, left);
         continue;
       }
-      const Eigen::MatrixXd weighted = view.mix.size() ? Eigen::MatrixXd(left * view.mix) : left;
+      const Eigen::MatrixXd weighted = view.Weighted(left);
       Eigen::VectorXd r;
       Eigen::MatrixXd b;
-      Block{view.rows, {}, {}, {}}.Evaluate(q.data(), influences, &r, &b);
+      Block{view.rows, 1, {}, {}, {}}.Evaluate(q.data(), influences, &r, &b);
       for (Eigen::Index k = 0; k < n; ++k) {
         const Quantity& quantity = influence(k);
         const Eigen::MatrixXd scores = Scores(weighted, b.col(k) * quantity.u, view.rows->points(), quantity.scope);

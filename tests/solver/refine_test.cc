@@ -55,6 +55,18 @@ TEST(Refine, DoesNotDependOnTheOrderOfTargetsAndViews) {
               Refine(turned, NominalStart(turned)).estimate.system[0], 1e-14);
 }
 
+TEST(Refine, GivesTheSameBitsEveryTime) {
+  const Problem problem = Pose({});
+  const Fit first = Refine(problem, NominalStart(problem));
+  for (int k = 1; k < 10; ++k) {
+    const std::vector<double> elsewhere(1000 * k);  // moves the heap
+    const Problem again = Pose({});
+    const Fit fit = Refine(again, NominalStart(again));
+    EXPECT_EQ(fit.estimate.system, first.estimate.system);
+    EXPECT_EQ(fit.cost, first.cost);
+  }
+}
+
 TEST(Observability, NamesWhatHasNoEffectOfItsOwn) {
   LineModel model;
   model.quantity(LineModel::kCurvature).role = Role::kEstimate;
