@@ -60,7 +60,9 @@ TEST_F(CompareTest, NineRowsInTheirOrder) {
     ASSERT_GE(numbers.size(), 12U) << rows[k];
     EXPECT_NEAR(numbers[0], 123, 1) << rows[k];
     EXPECT_NEAR(numbers[1], 409, 1.5) << rows[k];
-    if (k < nodes.size()) EXPECT_EQ(numbers[numbers.size() - 2], nodes[k]) << rows[k];
+    if (k < nodes.size()) {
+      EXPECT_EQ(numbers[numbers.size() - 2], nodes[k]) << rows[k];
+    }
   }
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("held out"), HasSubstr("step/√12"), HasSubstr("tilt_x/mrad")));
 }

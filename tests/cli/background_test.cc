@@ -1,0 +1,93 @@
+// Background behind the plate: set aside, counted, and without influence (specification of uncertainty, section 5).
+#include <gmock/gmock.h>
+#include "tests/cli/data_set.h"
+
+namespace scancal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class BackgroundTest : public CliTest {
+ protected:
+  BackgroundTest() { Simulate(data_, {"--profiles=60", "--points=40"}); }
+
+  void ExpectUnmoved(const Json& clean, const Json& disturbed) const {
+    for (const char* name : {"M", "N"}) {
+      EXPECT_LT(std::abs(ValueOf(disturbed, name) - ValueOf(clean, name)), UOf(disturbed, name)) << name;
+      EXPECT_LT(UOf(disturbed, name), 3 * UOf(clean, name)) << name;
+    }
+    EXPECT_LT(disturbed["sigma"], 1.3 * clean["sigma"].get<double>());
+  }
+  // Moves the points that `is_background` names by 40 mm; profile and point are indices.
+  size_t MoveAway(const std::function<bool(size_t profile, size_t point)>& is_background) const {
+    size_t moved = 0;
+    for (const std::string& name : kNames) {
+      std::vector<ScanPoint> points;
+      const auto profiles = Profiles(ReadPoints(data_ / (name + ".csv")));
+      for (size_t k = 0; k < profiles.size(); ++k)
+        for (size_t i = 0; i < profiles[k].size(); ++i) {
+          points.push_back(profiles[k][i]);
+          if (!is_background(k, i)) continue;
+          points.back().y += 40;
+          ++moved;
+        }
+      WritePoints(data_ / (name + ".csv"), points);
+    }
+    return moved / kNames.size();
+  }
+  static void ExpectSetAside(const Json& result, size_t moved) {
+    for (const Json& target : result["targets"]) {
+      EXPECT_NEAR(target["set_aside"], static_cast<double>(moved), 3) << target["name"];
+      EXPECT_NEAR(target["points"], static_cast<double>(2400 - moved), 3) << target["name"];
+    }
+  }
+
+  const fs::path data_ = Path("data");
+};
+
+TEST_F(BackgroundTest, ThirtyPercentOfEveryLine) {
+  const Json clean = Refined(data_);
+  const size_t moved = MoveAway([](size_t, size_t i) { return i < 12; });
+  EXPECT_EQ(moved, 720U);
+  const Json disturbed = Refined(data_);
+  ExpectSetAside(disturbed, moved);
+  ExpectUnmoved(clean, disturbed);
+  EXPECT_THAT(disturbed["targets"][0]["set_aside_reasons"].dump(), HasSubstr("off the line"));
+}
+
+TEST_F(BackgroundTest, ThirtyPercentOfTheProfiles) {
+  const Json clean = Refined(data_);
+  const size_t moved = MoveAway([](size_t k, size_t) { return k < 18; });
+  EXPECT_EQ(moved, 720U);
+  const Json disturbed = Refined(data_);
+  ExpectSetAside(disturbed, moved);
+  ExpectUnmoved(clean, disturbed);
+  EXPECT_THAT(disturbed["targets"][0]["set_aside_reasons"].dump(), HasSubstr("off the plane"));
+}
+
+TEST_F(BackgroundTest, ThirtyPercentOfTheProfilesInTheMiddle) {
+  const Json clean = Refined(data_);
+  const size_t moved = MoveAway([](size_t k, size_t) { return k >= 20 && k < 38; });
+  const Json disturbed = Refined(data_);
+  ExpectSetAside(disturbed, moved);
+  ExpectUnmoved(clean, disturbed);
+}
+
+TEST_F(BackgroundTest, PartOfTheLineInPartOfTheProfiles) {
+  const Json clean = Refined(data_);
+  const size_t moved = MoveAway([](size_t k, size_t i) { return (k < 12) || (k >= 40 && i >= 24); });
+  EXPECT_EQ(moved, 12U * 40 + 20 * 16);
+  const Json disturbed = Refined(data_);
+  ExpectSetAside(disturbed, moved);
+  ExpectUnmoved(clean, disturbed);
+}
+
+TEST_F(BackgroundTest, TheCountsArePrinted) {
+  MoveAway([](size_t, size_t i) { return i < 12; });
+  EXPECT_THAT(Refine(data_).out,
+              AllOf(HasSubstr("2160 set aside"), HasSubstr("set aside: left: 720 points off the line")));
+}
+
+}  // namespace
+}  // namespace scancal

@@ -1,0 +1,154 @@
+// The same measurement written in other ways gives the same result.
+#include <gmock/gmock.h>
+#include <algorithm>
+#include <numbers>
+#include <random>
+#include "tests/cli/data_set.h"
+
+namespace scancal {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+class LayoutsTest : public CliTest {
+ protected:
+  void ExpectSameResult(const Json& found, double relative_to_u = 1e-10) const {
+    for (const char* name : {"M", "N"}) {
+      const double u = UOf(expected_, name);
+      EXPECT_NEAR(ValueOf(found, name), ValueOf(expected_, name), relative_to_u * u) << name;
+      EXPECT_NEAR(UOf(found, name), u, relative_to_u * u) << name;
+    }
+  }
+
+  fs::path data_ = MakeData();
+  const Json expected_ = Refined(data_);
+};
+
+TEST_F(LayoutsTest, ShuffledLinesWithTheColumnProfile) {
+  std::mt19937 random(1);
+  for (const std::string& name : kNames) {
+    std::vector<std::vector<double>> rows;
+    const auto profiles = Profiles(ReadPoints(data_ / (name + ".csv")));
+    for (size_t k = 0; k < profiles.size(); ++k)
+      for (const ScanPoint& p : profiles[k]) rows.push_back({p.y, p.z, static_cast<double>(k), p.angle});
+    std::shuffle(rows.begin(), rows.end(), random);
+    WriteTable(data_ / (name + ".csv"), "y,z,profile,angle", rows);
+  }
+  ExpectSameResult(Refined(data_));
+}
+
+TEST_F(LayoutsTest, TwoAnglesInOneProfileAreAnError) {
+  std::vector<std::vector<double>> rows;
+  for (const ScanPoint& p : ReadPoints(data_ / "left.csv")) rows.push_back({p.angle, p.y, p.z, std::floor(p.angle)});
+  WriteTable(data_ / "left.csv", "angle,y,z,profile", rows);
+  const Outcome outcome = Refine(data_);
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(OneSentence(outcome), HasSubstr("expected one angle a profile"));
+}
+
+TEST_F(LayoutsTest, CounterclockwiseAnglesCountTheOtherWay) {
+  for (const std::string& name : kNames) {
+    std::vector<ScanPoint> points = ReadPoints(data_ / (name + ".csv"));
+    for (ScanPoint& p : points) p.angle = -p.angle;
+    WritePoints(data_ / (name + ".csv"), points);
+  }
+  Replace(data_ / "dataset.yaml", "rotation: clockwise", "rotation: counterclockwise");
+  ExpectSameResult(Refined(data_));
+}
+
+TEST_F(LayoutsTest, TheWrongSenseMirrorsM) {  // which planes cannot see: hence only the documentation can warn
+  Replace(data_ / "dataset.yaml", "rotation: clockwise", "rotation: counterclockwise");
+  Replace(data_ / "dataset.yaml", "M: [110, 130]", "M: [-130, -110]");
+  const Json mirrored = Refined(data_);
+  EXPECT_NEAR(ValueOf(mirrored, "M"), -ValueOf(expected_, "M"), 1e-6 * UOf(expected_, "M"));
+  EXPECT_NEAR(ValueOf(mirrored, "N"), ValueOf(expected_, "N"), 1e-6 * UOf(expected_, "N"));
+}
+
+TEST_F(LayoutsTest, OtherUnitsGiveTheSameMillimetres) {
+  for (const std::string& name : kNames) {
+    std::vector<std::vector<double>> rows;
+    for (const ScanPoint& p : ReadPoints(data_ / (name + ".csv")))
+      rows.push_back({p.angle * kDegree, p.y / 1000, p.z * 1000});
+    WriteTable(data_ / (name + ".csv"), "angle,y,z_um", rows);  // the suffix wins over units
+  }
+  Replace(data_ / "dataset.yaml", "{length: mm, angle: deg}", "{length: m, angle: rad}");
+  Replace(data_ / "dataset.yaml", "search: {M: [110, 130], N: [395, 425], step: 1}",
+          "search: {M: [0.11, 0.13], N: [0.395, 0.425], step: 0.001}");
+  ExpectSameResult(Refined(data_), 1e-8);
+}
+
+TEST_F(LayoutsTest, TheWideLayoutIsTheLongOne) {
+  for (const std::string& name : kNames) {
+    std::string text = "angle," + std::string(19, ',') + "\n";
+    for (const auto& profile : Profiles(ReadPoints(data_ / (name + ".csv")))) {
+      char cell[40];
+      std::snprintf(cell, sizeof cell, "%.17g", profile.front().angle);
+      text += cell;
+      for (const ScanPoint& p : profile) {
+        std::snprintf(cell, sizeof cell, ",%.17g", p.y);
+        text += cell;
+      }
+      text += "\n";
+    }
+    WriteWhole(data_ / (name + ".csv"), text);
+  }
+  Append(data_ / "dataset.yaml",
+         "layout: {wide: y, angle_column: 1, first_column: 2, start: -100, step: 10.526315789473685}\n");  // 200 / 19
+  ExpectSameResult(Refined(data_), 1e-2);  // z was rounded to 0.1 um in the long one
+}
+
+TEST_F(LayoutsTest, ALidarSeesTheSameAxis) {
+  Simulate(Path("fine"), {"--profiles=40", "--points=20", "--noise=0.002", "--format=csv"});
+  const fs::path data = Path("fine");
+  for (const std::string& name : kNames) {
+    std::vector<std::vector<double>> rows;
+    for (const ScanPoint& p : ReadPoints(data / (name + ".csv")))
+      rows.push_back({p.angle, std::atan2(p.z, p.y) / kDegree, std::hypot(p.y, p.z)});
+    WriteTable(data / (name + ".csv"), "angle,bearing,range", rows);
+  }
+  const Json result = Refined(data);
+  EXPECT_NEAR(ValueOf(result, "M"), 123, 4 * UOf(result, "M"));
+  EXPECT_NEAR(ValueOf(result, "N"), 409, 4 * UOf(result, "N"));
+  EXPECT_LT(UOf(result, "M"), 0.01);
+  EXPECT_LT(UOf(result, "N"), 0.02);
+}
+
+TEST_F(LayoutsTest, KeepKeepsWhatItSays) {
+  for (const std::string& name : kNames)
+    Replace(data_ / "dataset.yaml", "scan: " + name + ".csv",
+            "scan: " + name + ".csv, keep: {angle: [-10, 10], z: [-50, 60]}");
+  const Json kept = Refined(data_);
+  for (const std::string& name : kNames) {
+    std::vector<ScanPoint> points = ReadPoints(data_ / (name + ".csv"));
+    std::erase_if(points, [](const ScanPoint& p) { return std::abs(p.angle) > 10 || p.z < -50 || p.z > 60; });
+    WritePoints(data_ / (name + ".csv"), points);
+    Replace(data_ / "dataset.yaml", ", keep: {angle: [-10, 10], z: [-50, 60]}", "");
+  }
+  const Json cut = Refined(data_);
+  EXPECT_EQ(kept["targets"][0]["points"], 26 * 11);
+  EXPECT_EQ(cut["targets"][0]["points"], 26 * 11);
+  for (const char* name : {"M", "N"}) EXPECT_NEAR(ValueOf(kept, name), ValueOf(cut, name), 1e-10 * UOf(cut, name));
+}
+
+TEST_F(LayoutsTest, ADeclaredInvalidValueIsMissing) {
+  for (const std::string& name : kNames) {
+    std::vector<ScanPoint> points = ReadPoints(data_ / (name + ".csv"));
+    for (size_t i = 0; i < points.size(); i += 10) points[i].y = -9999;
+    WritePoints(data_ / (name + ".csv"), points);
+  }
+  Append(data_ / "dataset.yaml", "invalid: -9999\n");
+  const Json result = Refined(data_);
+  EXPECT_EQ(result["targets"][0]["missing"], 80);
+  EXPECT_EQ(result["targets"][0]["points"], 720);
+  EXPECT_EQ(result["targets"][0]["set_aside"], 0);
+}
+
+TEST_F(LayoutsTest, CommentsAreSkipped) {
+  WriteWhole(data_ / "left.csv", "# made by hand\n" + ReadWhole(data_ / "left.csv") + "# the end\n");
+  ExpectSameResult(Refined(data_));
+}
+
+}  // namespace
+}  // namespace scancal
