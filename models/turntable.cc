@@ -80,12 +80,10 @@ void Turntable::SetPlane(const Eigen::Vector3d& normal, double distance, Target*
   target->e2 = target->normal.cross(target->e1);
 }
 
-Eigen::Vector3d TurntablePose::Point(double alpha, double y, double z) const {
-  const Eigen::Vector3d in_sensor(0, y * (1 + scale_y), z * (1 + scale_z));
-  const Eigen::Vector3d at_zero = Eigen::AngleAxisd(tilt_y, Eigen::Vector3d::UnitY()) *
-                                      (Eigen::AngleAxisd(tilt_x, Eigen::Vector3d::UnitX()) * in_sensor) +
-                                  Eigen::Vector3d(-M, N, 0);
-  return Eigen::AngleAxisd(std::numbers::pi - alpha, Eigen::Vector3d::UnitZ()) * at_zero;
+Eigen::Affine3d TurntablePose::TableFromSensor(double alpha) const {
+  return Eigen::AngleAxisd(std::numbers::pi - alpha, Eigen::Vector3d::UnitZ()) * Eigen::Translation3d(-M, N, 0) *
+         Eigen::AngleAxisd(tilt_y, Eigen::Vector3d::UnitY()) * Eigen::AngleAxisd(tilt_x, Eigen::Vector3d::UnitX()) *
+         Eigen::Scaling(1.0, 1 + scale_y, 1 + scale_z);
 }
 
 }  // namespace scancal

@@ -1,6 +1,6 @@
 // A laser line profiler that turns about an axis and sees planes (Zhao et al. 2021).
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -70,10 +70,14 @@ class Turntable {
   Quantities quantities_;
 };
 
-// P(alpha; y, z) in the table frame.
+// Where the profiler stands: what turns a measured point into the table frame.
 struct TurntablePose {
   double M = 0, N = 0, tilt_x = 0, tilt_y = 0, scale_y = 0, scale_z = 0;
-  Eigen::Vector3d Point(double alpha, double y, double z) const;
+  // P = table_from_sensor (0, y, z), one for all points of a profile; scales included.
+  Eigen::Affine3d TableFromSensor(double alpha) const;
+  Eigen::Vector3d Point(double alpha, double y, double z) const {
+    return TableFromSensor(alpha) * Eigen::Vector3d(0, y, z);
+  }
 };
 
 template <class T>

@@ -116,7 +116,8 @@ Result<Calibration> CalibrationFromJson(const Json& json, const std::string& fil
   if (!json.contains("parameters") || !json["parameters"].is_array()) return expected("a list of \"parameters\"");
   Calibration result;
   result.model = json["model"];
-  if (json.value("status", "ok") != "ok") result.unreliable.push_back("the calibration says so of itself");
+  if (!json.contains("status") || !json["status"].is_string()) return expected("\"status\"");
+  if (json["status"] != "ok") result.unreliable.push_back("the calibration says so of itself");
   for (const Json& each : json["parameters"]) {
     if (!each.is_object() || !each.contains("name") || !each["name"].is_string())
       return expected("a name for every parameter");

@@ -12,7 +12,7 @@ struct ComparisonRow {
   std::vector<std::optional<double>> u;  // standard uncertainty; none for a grid
   std::optional<double> quantisation;    // of a grid: step / sqrt(12), mm
   double S = 0;                          // the search's objective at the values, mm
-  double rms = 0;                        // point to plane, mm
+  double rms = 0;                        // of the distance that all methods make small, mm
   std::optional<double> held_out_rms;    // of each target with the values found without it, pooled, mm
   double effort = 0;                     // nodes of a grid, iterations of a refinement
   bool is_grid = false;

@@ -16,7 +16,7 @@ enum class Scope {
   kTarget,
   kView,
   kPoint
-};  // who shares one value: all | a target | a view (profile, pose) | nobody
+};  // who shares one value: all | a target | a view (one scan line, one pose) | nobody
 enum class Role { kEstimate, kConsider, kHold };
 
 const char* Name(Unit unit);  // "mm", "rad", "1"

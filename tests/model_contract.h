@@ -108,7 +108,7 @@ TYPED_TEST_P(ModelContract, CompressionKeepsCostGradientEstimateAndCovariance) {
   const Linearization lb = Linearize(all.problem, b.estimate, Storey::kViews);
   for (const auto& covariance : {&NaiveCovariance, &ClusteredCovariance}) {
     const Eigen::MatrixXd ca = covariance(few.problem, la).matrix, cb = covariance(all.problem, lb).matrix;
-    EXPECT_LT((ca - cb).norm(), 1e-8 * cb.norm());
+    EXPECT_LT((ca - cb).norm(), 1e-9 * cb.norm());
   }
   EXPECT_LT((InverseInformation(la) - InverseInformation(lb)).norm(), 1e-9 * InverseInformation(lb).norm());
 }
@@ -168,7 +168,7 @@ TYPED_TEST_P(ModelContract, TheOrderOfPointsViewsAndTargetsDoesNotMatter) {
   const Eigen::MatrixXd covariance = InverseInformation(Linearize(forward.problem, a.estimate, Storey::kViews)) *
                                      TypeParam::kNoise * TypeParam::kNoise;
   for (Eigen::Index k = 0; k < a.estimate.system.size(); ++k)
-    EXPECT_NEAR(a.estimate.system[k], b.estimate.system[k], 1e-8 * std::sqrt(covariance(k, k)));
+    EXPECT_NEAR(a.estimate.system[k], b.estimate.system[k], 1e-10 * std::sqrt(covariance(k, k)));
 }
 
 REGISTER_TYPED_TEST_SUITE_P(ModelContract, RecoversTheTruthFromNoiselessData, LoadsWhatItSimulates,

@@ -65,7 +65,7 @@ void ReadKeep(YamlMap target, const Units& units, ScanDeclaration* scan) {
 }
 
 // Defaults for all targets stand at the top level, a target's own override them.
-ScanDeclaration ReadTarget(YamlMap target, YamlMap top, const Dataset& dataset) {
+ScanDeclaration ReadTarget(YamlMap target, const YamlMap& top, const Dataset& dataset) {
   ScanDeclaration scan;
   scan.name = target.Text("name");
   if (scan.name.empty()) target.Fail("name", "expected a name");

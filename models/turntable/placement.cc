@@ -78,8 +78,10 @@ double SetAsideOffPlane(const TurntablePose& pose, std::vector<RawProfile>* prof
   for (size_t k = 0; k < profiles->size(); ++k) {
     const RawProfile& profile = (*profiles)[k];
     std::vector<double>& of_profile = distances.emplace_back();
+    const Eigen::Affine3d table_from_sensor = pose.TableFromSensor(profile.alpha);
     for (size_t i = 0; i < profile.y.size(); ++i)
-      of_profile.push_back(std::abs(plane.Distance(pose.Point(profile.alpha, profile.y[i], profile.z[i]))));
+      of_profile.push_back(
+          std::abs(plane.Distance(table_from_sensor * Eigen::Vector3d(0, profile.y[i], profile.z[i]))));
     if (!plane.off[k]) on.insert(on.end(), of_profile.begin(), of_profile.end());
   }
   const double within = std::max(kOffLine * kMadToSigma * Median(on), kRounding * Extent(profiles->front()));

@@ -52,9 +52,10 @@ PlaneStorey::PlaneStorey(std::span<const Turntable::View> profiles, const Turnta
   for (const Turntable::View& profile : profiles) {
     rows.resize(std::ssize(profile.points), 6);
     const double c = std::cos(profile.alpha), s = std::sin(profile.alpha);
+    const Eigen::Affine3d table_from_sensor = at_axis.TableFromSensor(profile.alpha);
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
       const PseudoPoint& p = profile.points[i];
-      const Eigen::Vector3d p0 = at_axis.Point(profile.alpha, p.y, p.z);
+      const Eigen::Vector3d p0 = table_from_sensor * Eigen::Vector3d(0, p.y, p.z);
       rows.row(i) << 1, c, s, p0.x(), p0.y(), p0.z();
       rows.row(i) *= p.weight;
     }

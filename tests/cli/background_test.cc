@@ -12,6 +12,13 @@ class BackgroundTest : public CliTest {
  protected:
   BackgroundTest() { Simulate(data_, {"--profiles=60", "--points=40"}); }
 
+  // The same as if the background had been deleted by hand.
+  void ExpectAsDeleted(const Json& deleted, const Json& disturbed) const {
+    for (const char* name : {"M", "N"}) {
+      EXPECT_NEAR(ValueOf(disturbed, name), ValueOf(deleted, name), 0.2 * UOf(deleted, name)) << name;
+      EXPECT_NEAR(UOf(disturbed, name), UOf(deleted, name), 0.2 * UOf(deleted, name)) << name;
+    }
+  }
   void ExpectUnmoved(const Json& clean, const Json& disturbed) const {
     for (const char* name : {"M", "N"}) {
       EXPECT_LT(std::abs(ValueOf(disturbed, name) - ValueOf(clean, name)), UOf(disturbed, name)) << name;
@@ -19,8 +26,8 @@ class BackgroundTest : public CliTest {
     }
     EXPECT_LT(disturbed["sigma"], 1.3 * clean["sigma"].get<double>());
   }
-  // Moves the points that `is_background` names by 40 mm; profile and point are indices.
-  size_t MoveAway(const std::function<bool(size_t profile, size_t point)>& is_background) const {
+  // Moves the points that `is_background` names by 40 mm, or by nan: profile and point are indices.
+  size_t MoveAway(const std::function<bool(size_t profile, size_t point)>& is_background, double by = 40) const {
     size_t moved = 0;
     for (const std::string& name : kNames) {
       std::vector<ScanPoint> points;
@@ -29,7 +36,7 @@ class BackgroundTest : public CliTest {
         for (size_t i = 0; i < profiles[k].size(); ++i) {
           points.push_back(profiles[k][i]);
           if (!is_background(k, i)) continue;
-          points.back().y += 40;
+          points.back().y += by;
           ++moved;
         }
       WritePoints(data_ / (name + ".csv"), points);
@@ -75,12 +82,15 @@ TEST_F(BackgroundTest, ThirtyPercentOfTheProfilesInTheMiddle) {
 }
 
 TEST_F(BackgroundTest, PartOfTheLineInPartOfTheProfiles) {
-  const Json clean = Refined(data_);
-  const size_t moved = MoveAway([](size_t k, size_t i) { return (k < 12) || (k >= 40 && i >= 24); });
+  const auto is_background = [](size_t k, size_t i) { return (k < 12) || (k >= 40 && i >= 24); };
+  const size_t moved = MoveAway(is_background);
   EXPECT_EQ(moved, 12U * 40 + 20 * 16);
   const Json disturbed = Refined(data_);
   ExpectSetAside(disturbed, moved);
-  ExpectUnmoved(clean, disturbed);
+  MoveAway(is_background, std::nan(""));
+  const Json deleted = Refined(data_);
+  EXPECT_EQ(deleted["targets"][0]["missing"], moved);
+  ExpectAsDeleted(deleted, disturbed);
 }
 
 TEST_F(BackgroundTest, TheCountsArePrinted) {

@@ -1,0 +1,175 @@
+// Roles of the parameters: estimate, with a prior, consider, hold; and the residuals.
+#include <gmock/gmock.h>
+#include "tests/cli/data_set.h"
+
+namespace scancal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr double kDegree = 0.017453292519943295;
+
+class RolesTest : public CliTest {
+ protected:
+  // Refines the data with this line in dataset.yaml; the old file is back afterwards.
+  Json With(const std::string& line, int exit_code = 0) const {
+    const std::string old = ReadWhole(data_ / "dataset.yaml");
+    Append(data_ / "dataset.yaml", line + "\n");
+    Json result = Refined(data_, exit_code);
+    WriteWhole(data_ / "dataset.yaml", old);
+    return result;
+  }
+  std::string Refusal(const std::string& line) const {
+    const std::string old = ReadWhole(data_ / "dataset.yaml");
+    Append(data_ / "dataset.yaml", line + "\n");
+    const Outcome outcome = Refine(data_);
+    WriteWhole(data_ / "dataset.yaml", old);
+    EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+    return OneSentence(outcome);
+  }
+
+  const fs::path data_ = MakeData();
+};
+
+TEST_F(RolesTest, WithoutASectionMAndNAreEstimated) {
+  const Json result = Refined(data_);
+  for (const char* name : {"M", "N"}) EXPECT_EQ(ParameterOf(result, name)["role"], "estimate");
+  for (const char* name : {"tilt_x", "tilt_y", "scale_y", "scale_z"}) {
+    EXPECT_EQ(ParameterOf(result, name)["role"], "hold") << name;
+    EXPECT_EQ(ValueOf(result, name), 0) << name;
+    EXPECT_EQ(UOf(result, name), 0) << name;
+  }
+}
+
+TEST_F(RolesTest, AHeldParameterKeepsItsValue) {
+  const Json result = With("parameters: {M: {hold: 123}}");
+  EXPECT_EQ(ParameterOf(result, "M")["role"], "hold");
+  EXPECT_EQ(ValueOf(result, "M"), 123);
+  EXPECT_EQ(UOf(result, "M"), 0);
+  EXPECT_EQ(ParameterOf(result, "N")["role"], "estimate");
+  EXPECT_NEAR(ValueOf(result, "N"), 409, 4 * UOf(result, "N"));
+  EXPECT_LE(UOf(result, "N"), UOf(Refined(data_), "N") * 1.01);
+  EXPECT_EQ(result["covariance"].size(), 1U);
+  EXPECT_EQ(result["covariance_of"], Json({"N"}));
+  EXPECT_EQ(result["grid"]["M"], 123);
+}
+
+TEST_F(RolesTest, AWrongHeldValueIsNotQuietlyBelieved) {
+  const Json result = With("parameters: {M: {hold: 126}}");
+  EXPECT_EQ(ValueOf(result, "M"), 126);
+  EXPECT_THAT(Sentences(result, "warnings"), HasSubstr("lack of fit"));
+}
+
+TEST_F(RolesTest, BothMayBeHeld) {
+  const Json result = With("parameters: {M: {hold: 123}, N: {hold: 409}}");
+  EXPECT_EQ(ValueOf(result, "M"), 123);
+  EXPECT_EQ(ValueOf(result, "N"), 409);
+  EXPECT_EQ(result["covariance"].size(), 0U);
+}
+
+TEST_F(RolesTest, TiltsAreEstimatedOnRequest) {
+  const Json result = With("parameters: {tilt_x: estimate, tilt_y: estimate}");
+  for (const char* name : {"tilt_x", "tilt_y"}) {
+    EXPECT_EQ(ParameterOf(result, name)["role"], "estimate");
+    EXPECT_EQ(ParameterOf(result, name)["unit"], "rad");
+    EXPECT_NEAR(ValueOf(result, name), 0, 4 * UOf(result, name));
+    EXPECT_GT(UOf(result, name), 1e-6);
+    EXPECT_LT(UOf(result, name), 2e-3);
+  }
+  EXPECT_EQ(result["covariance"].size(), 4U);
+}
+
+TEST_F(RolesTest, AConsideredTiltEnlargesU) {
+  const Json held = Refined(data_), considered = With("parameters: {tilt_y: {consider: 0, u: 0.05}}");
+  EXPECT_EQ(ParameterOf(considered, "tilt_y")["role"], "consider");
+  EXPECT_NEAR(UOf(considered, "tilt_y"), 0.05 * kDegree, 1e-12);
+  double enlarged = 0;
+  for (const char* name : {"M", "N"}) {
+    EXPECT_NEAR(ValueOf(considered, name), ValueOf(held, name), 1e-9);
+    const double more = std::pow(UOf(considered, name), 2) - std::pow(UOf(held, name), 2);
+    EXPECT_GE(more, -1e-12);
+    EXPECT_NEAR(UOf(considered, name),
+                std::sqrt(std::pow(ParameterOf(considered, name)["u_clustered"].get<double>(), 2) + more), 1e-9);
+    enlarged = std::max(enlarged, more / std::pow(UOf(held, name), 2));
+    // The budget has its line, and explains the enlargement.
+    bool found = false;
+    for (const Json& line : considered["budget"]) {
+      if (line["source"] != "tilt_y") continue;
+      found = true;
+      EXPECT_NEAR(line["value"], 0.05 * kDegree, 1e-12);
+      EXPECT_NEAR(line["u"][name], std::sqrt(std::max(0.0, more)), 1e-3 * UOf(held, name));
+      EXPECT_NEAR(std::abs(line["sensitivity"][name].get<double>()) * 0.05 * kDegree, line["u"][name], 1e-9);
+    }
+    EXPECT_TRUE(found);
+  }
+  EXPECT_GT(enlarged, 0.1);
+}
+
+TEST_F(RolesTest, TheSensitivityToATiltIsWhatHoldingItElsewhereDoes) {
+  const Json considered = With("parameters: {tilt_y: {consider: 0, u: 0.05}}"),
+             moved = With("parameters: {tilt_y: {hold: 0.05}}"), back = With("parameters: {tilt_y: {hold: -0.05}}");
+  for (const Json& line : considered["budget"]) {
+    if (line["source"] != "tilt_y") continue;
+    for (const char* name : {"M", "N"})
+      EXPECT_NEAR((ValueOf(moved, name) - ValueOf(back, name)) / (0.1 * kDegree), line["sensitivity"][name],
+                  0.02 * std::abs(line["sensitivity"][name].get<double>()) + 0.5)
+          << name;
+  }
+}
+
+TEST_F(RolesTest, APriorPullsAndSharpens) {
+  const Json free = Refined(data_), prior = With("parameters: {N: {estimate: 409.5, u: 0.01}}");
+  EXPECT_NEAR(ValueOf(prior, "N"), 409.5, 0.03);
+  EXPECT_LT(UOf(prior, "N"), 0.0101);
+  const double u_data = UOf(free, "N"), u_prior = 0.1;
+  const Json weak = With("parameters: {N: {estimate: 409.5, u: 0.1}}");
+  const double w = 1 / (u_data * u_data), w_prior = 1 / (u_prior * u_prior);
+  const double expected = (w * ValueOf(free, "N") + w_prior * 409.5) / (w + w_prior);
+  EXPECT_NEAR(ValueOf(weak, "N"), expected, 0.03);
+  EXPECT_NEAR(UOf(weak, "N"), 1 / std::sqrt(w + w_prior), 0.02);
+}
+
+TEST_F(RolesTest, NumbersAreInTheDeclaredUnits) {
+  const Json degrees = With("parameters: {tilt_x: {hold: 0.1}}");
+  EXPECT_NEAR(ValueOf(degrees, "tilt_x"), 0.1 * kDegree, 1e-15);
+}
+
+TEST_F(RolesTest, AHeldOffsetNeedsItsValue) {
+  EXPECT_THAT(Refusal("parameters: {M: hold}"), AllOf(StartsWith((data_ / "dataset.yaml").string()),
+                                                      HasSubstr("parameters: M: "), HasSubstr("{hold: 123}")));
+}
+
+TEST_F(RolesTest, AnUnknownParameterIsRefused) {
+  EXPECT_THAT(Refusal("parameters: {tiltx: estimate}"),
+              AllOf(HasSubstr("tiltx: unknown parameter"), HasSubstr("did you mean 'tilt_x'?")));
+}
+
+TEST_F(RolesTest, DeclaredInfluencesMakeTheBudgetAndTheFootnote) {
+  EXPECT_THAT(Refine(data_).out, HasSubstr("not a traceable uncertainty"));
+  const Json held = Refined(data_), scaled = With("influences: {scale_y: 0.001}");
+  EXPECT_NEAR(std::pow(UOf(scaled, "N"), 2) - std::pow(UOf(held, "N"), 2), std::pow(0.409, 2), 0.02 * 0.409);
+  Append(data_ / "dataset.yaml", "influences: {scale_y: 0.001}\n");
+  EXPECT_THAT(Refine(data_).out, Not(HasSubstr("not a traceable uncertainty")));
+}
+
+TEST_F(RolesTest, InfluencesThatAreNotModelledYetAreNamed) {
+  EXPECT_THAT(Sentences(With("influences: {flatness: 0.02}"), "warnings"),
+              HasSubstr("influences: flatness: declared, but not part of u"));
+}
+
+TEST_F(RolesTest, ThePlainResidualIsAvailableAndWarnedOf) {
+  const Json depth = Refined(data_), plane = Refined(data_, 0, {"--residual=plane"});
+  EXPECT_EQ(depth["residual"], "depth");
+  EXPECT_EQ(plane["residual"], "plane");
+  EXPECT_THAT(Sentences(plane, "warnings"), HasSubstr("biased"));
+  for (const char* name : {"M", "N"}) {
+    EXPECT_NE(ValueOf(plane, name), ValueOf(depth, name));
+    EXPECT_NEAR(ValueOf(plane, name), ValueOf(depth, name), UOf(depth, name));
+  }
+}
+
+}  // namespace
+}  // namespace scancal
