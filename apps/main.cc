@@ -51,12 +51,17 @@ int RefuseForeignFlags(const Command& command) {
   return kTrusted;
 }
 
+// As a shell takes it back.
+std::string ShellQuoted(const std::string& argument) {
+  static constexpr char kPlain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
+  if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) return argument;
+  std::string quoted = "'";
+  for (const char c : argument) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 int Main(int argc, char** argv) {
-  for (int i = 0; i < argc; ++i) {
-    const std::string argument = argv[i];
-    const bool plain = argument.find_first_of(" \t'\"\\$&|;<>()*?") == std::string::npos && !argument.empty();
-    command_line += (i ? " " : "") + (plain ? argument : "'" + argument + "'");
-  }
+  for (int i = 0; i < argc; ++i) command_line += (i ? " " : "") + ShellQuoted(argv[i]);
   FLAGS_logtostderr = true;
   FLAGS_minloglevel = google::GLOG_WARNING;
   google::InitGoogleLogging(argv[0]);

@@ -74,13 +74,12 @@ void AddBudget(const Solution& solution, const Eigen::MatrixXd& clustered, const
 }
 
 void WarnOfJackknife(const Solution& solution, const Jackknife& jackknife, double clustered_dof, Calibration* result) {
-  const auto m = static_cast<double>(jackknife.estimates.rows());
-  if (m < 2 || clustered_dof < 1) return;
-  const Eigen::VectorXd expected = ExpectedJackknife(solution.problem, solution.linear).diagonal();
+  if (jackknife.estimates.rows() < 2 || clustered_dof < 1) return;
+  const ExpectedJackknife expected = ExpectLeaveOneTargetOut(solution.problem, solution.linear);
   for (size_t k = 0; k < result->estimated.size(); ++k) {
     const auto e = static_cast<Eigen::Index>(k);
-    const double ratio = jackknife.covariance(e, e) / expected[e];
-    if (FUpperTail(ratio, m - 1, clustered_dof) < kSuspicious)
+    const double ratio = jackknife.covariance(e, e) / expected.variance[e];
+    if (FUpperTail(ratio, expected.dof[e], clustered_dof) < kSuspicious)
       result->warnings.push_back(
           fmt::format("{}: leaving one target out moves it {:.2g} times as far as its u explains; the targets "
                       "disagree, so u is probably "

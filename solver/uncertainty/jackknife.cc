@@ -1,5 +1,6 @@
 #include "solver/uncertainty/jackknife.h"
 #include <Eigen/LU>
+#include <cmath>
 #include "solver/uncertainty/covariance.h"
 
 namespace scancal {
@@ -23,7 +24,7 @@ Jackknife LeaveOneTargetOut(const Problem& problem, const Fit& fit) {
   return result;
 }
 
-Eigen::MatrixXd ExpectedJackknife(const Problem& problem, const Linearization& linear) {
+ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Linearization& linear) {
   const std::vector<TargetScores> scores = ScoresByTarget(problem, linear);
   const Eigen::MatrixXd inverse = InverseInformation(linear);
   const auto n = inverse.rows();
@@ -41,15 +42,20 @@ Eigen::MatrixXd ExpectedJackknife(const Problem& problem, const Linearization& l
           without * ((i == j ? 1 : 0) * Eigen::MatrixXd::Identity(n, n) - scores[i].information * inverse);
     mean += moves[i] / static_cast<double>(m);
   }
-  Eigen::MatrixXd expected = 0 * inverse;
-  for (size_t i = 0; i < m; ++i) {
-    const Eigen::MatrixXd centred = moves[i] - mean;
+  ExpectedJackknife expected{Eigen::VectorXd(n), Eigen::VectorXd(n)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    // Covariance of the m centred moves of this quantity; the sum of their squares is what the jackknife sees.
+    Eigen::MatrixXd rows(static_cast<Eigen::Index>(m), mean.cols());
+    for (size_t i = 0; i < m; ++i) rows.row(static_cast<Eigen::Index>(i)) = moves[i].row(k) - mean.row(k);
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(rows.rows(), rows.rows());
     for (size_t j = 0; j < m; ++j) {
-      const auto block = centred.middleCols(static_cast<Eigen::Index>(j) * n, n);
-      expected += block * scores[j].meat * block.transpose();
+      const auto block = rows.middleCols(static_cast<Eigen::Index>(j) * n, n);
+      covariance += block * scores[j].meat * block.transpose();
     }
+    expected.variance[k] = covariance.trace() * static_cast<double>(m - 1) / static_cast<double>(m);
+    expected.dof[k] = std::pow(covariance.trace(), 2) / covariance.squaredNorm();
   }
-  return expected * static_cast<double>(m - 1) / static_cast<double>(m);
+  return expected;
 }
 
 }  // namespace scancal

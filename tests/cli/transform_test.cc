@@ -164,12 +164,15 @@ TEST_F(TransformTest, OtherFilesAreNoCalibration) {
   EXPECT_THAT(refused("[1, 2]"), AllOf(StartsWith(file + ": "), HasSubstr("is it a calibration.json?")));
   EXPECT_THAT(refused(R"({"scancal": 2})"), HasSubstr("expected format version 1, found 2"));
   EXPECT_THAT(refused(R"({"scancal": 1, "model": "turntable"})"), HasSubstr("a list of \"parameters\""));
-  EXPECT_THAT(refused(R"({"scancal": 1, "model": "turntable", "parameters": []})"), HasSubstr("no parameter M"));
-  EXPECT_THAT(refused(R"({"scancal": 1, "model": "turntable", "parameters": [{"name": "M", "value": null}]})"),
-              HasSubstr("a number as \"value\" of M"));
-  EXPECT_THAT(refused(R"({"scancal": 1, "model": "turntable", "parameters": [{"name": 5}]})"), HasSubstr("a name"));
+  EXPECT_THAT(refused(R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": []})"),
+              HasSubstr("no parameter M"));
+  EXPECT_THAT(
+      refused(R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [{"name": "M", "value": null}]})"),
+      HasSubstr("a number as \"value\" of M"));
+  EXPECT_THAT(refused(R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [{"name": 5}]})"),
+              HasSubstr("a name"));
   EXPECT_THAT(refused(R"({"scancal": 1, "model": "turntable", "status": 5, "parameters": []})"), StartsWith(file));
-  EXPECT_THAT(refused(R"({"scancal": 1, "model": "robot-ball", "parameters": []})"),
+  EXPECT_THAT(refused(R"({"scancal": 1, "model": "robot-ball", "status": "ok", "parameters": []})"),
               AllOf(HasSubstr("\"robot-ball\""), HasSubstr("\"turntable\"")));
   EXPECT_FALSE(fs::exists(Path("cloud.csv")));
 }

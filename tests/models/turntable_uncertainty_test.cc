@@ -14,7 +14,8 @@ constexpr double kDegree = M_PI / 180;
 struct Study {
   Eigen::Vector2d mean = {0, 0}, scatter = {0, 0};  // of the errors of M, N, mm
   Eigen::Vector2d naive = {0, 0}, clustered = {0, 0}, jackknife = {0, 0}, expected_jackknife = {0, 0};  // rms of u
-  double lack_of_fit = 0;                                                                               // mean F
+  double lack_of_fit = 0;       // mean F
+  int warned_of_jackknife = 0;  // trials
 };
 
 Study Repeat(TurntableScene scene, Turntable::Residuals residuals, int trials) {
@@ -31,7 +32,7 @@ Study Repeat(TurntableScene scene, Turntable::Residuals residuals, int trials) {
     study.naive += NaiveCovariance(problem, solution.linear).matrix.diagonal() / trials;
     study.clustered += ClusteredCovariance(problem, solution.linear).matrix.diagonal() / trials;
     study.jackknife += LeaveOneTargetOut(problem, solution.fit).covariance.diagonal() / trials;
-    study.expected_jackknife += ExpectedJackknife(problem, solution.linear).diagonal() / trials;
+    study.expected_jackknife += ExpectLeaveOneTargetOut(problem, solution.linear).variance / trials;
     PureError pure;
     for (const SimulatedPlacement& placement : SimulateTurntable(scene)) {
       for (const Profile& profile : Compress(placement)) {
@@ -39,7 +40,11 @@ Study Repeat(TurntableScene scene, Turntable::Residuals residuals, int trials) {
         pure.dof += profile.pure_error.dof;
       }
     }
-    study.lack_of_fit += Summarize(solution, scene.noise_y, pure).lack_of_fit.F / trials;
+    const Calibration result = Summarize(solution, scene.noise_y, pure);
+    study.lack_of_fit += result.lack_of_fit.F / trials;
+    study.warned_of_jackknife += std::any_of(result.warnings.begin(), result.warnings.end(), [](const auto& warning) {
+      return warning.find("leaving one target out") != std::string::npos;
+    });
   }
   for (Eigen::Vector2d* variance :
        {&study.scatter, &study.naive, &study.clustered, &study.jackknife, &study.expected_jackknife})
@@ -64,6 +69,7 @@ TEST(TurntableUncertainty, NaiveAndClusteredAreRightOnWhiteNoise) {
     EXPECT_NEAR(study.clustered[k] / study.scatter[k], 1, kOfScatter);
     EXPECT_NEAR(study.jackknife[k] / study.expected_jackknife[k], 1, 0.15);
   }
+  EXPECT_LE(study.warned_of_jackknife, 5);  // 0.8 expected: two parameters, each once in a thousand
   EXPECT_NEAR(study.lack_of_fit, 1, 4 * std::sqrt(2 / 350.0 / kTrials));
 }
 
@@ -76,7 +82,23 @@ TEST(TurntableUncertainty, OnlyTheClusteredOneIsRightUnderEncoderJitter) {
     EXPECT_NEAR(study.clustered[k] / study.scatter[k], 1, kOfScatter);
     EXPECT_NEAR(study.jackknife[k] / study.expected_jackknife[k], 1, 0.15);
   }
+  EXPECT_LE(study.warned_of_jackknife, 5);
   EXPECT_GT(study.lack_of_fit, 1.5);
+}
+
+TEST(TurntableUncertainty, TheJackknifeWarnsWhenPlacementsDisagree) {
+  const TurntableScene scene = Scene();
+  auto placements = SimulateTurntable(scene);
+  for (SimulatedProfile& profile : placements[1].profiles) profile.alpha += 2e-3;  // the mount slipped in between
+  for (SimulatedProfile& profile : placements[1].profiles)
+    for (size_t i = 0; i < profile.y.size(); ++i) profile.y[i] *= 1 + 2e-3;
+  Problem problem = MakeProblem<Turntable>(std::make_shared<const Turntable>(Turntable::Residuals::kDepth),
+                                           MakeTargets(placements, {}));
+  problem.WeighEqually(scene.noise_y);
+  const Estimate start = StartNear(problem, scene.pose);
+  const Calibration result = Summarize(Solve(std::move(problem), start), scene.noise_y, {});
+  ASSERT_FALSE(result.warnings.empty());
+  EXPECT_NE(result.warnings[0].find("N: leaving one target out"), std::string::npos) << result.warnings[0];
 }
 
 TEST(TurntableUncertainty, PlainPointToPlaneIsBiasedAndTheDepthResidualIsNot) {

@@ -1,0 +1,77 @@
+// A real lidar on a tilt stand: M 80, N 0 mm nominal, known no better than to some centimetres.
+#include <gmock/gmock.h>
+#include <cstdlib>
+#include "tests/cli/data_set.h"
+
+namespace scancal {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr char kScan[] = "0_to_pos90_degree.csv";
+
+// The folder of data sets that are not part of the project.
+fs::path DataSets() {
+  const char* const named = std::getenv("SCANCAL_DATASETS");
+  return named ? fs::path(named) : fs::path(SCANCAL_SOURCE_DIR) / ".." / "shared" / "datasets";
+}
+
+class TiltingLidarTest : public CliTest {
+ protected:
+  void SetUp() override {
+    const fs::path scan = DataSets() / "tilting-lidar" / kScan;
+    if (!fs::exists(scan))
+      GTEST_SKIP() << "NOT TESTED ON REAL DATA: there is no " << scan
+                   << "; set SCANCAL_DATASETS to the folder that holds tilting-lidar/";
+    fs::create_directory(data_);
+    fs::copy(fs::path(SCANCAL_SOURCE_DIR) / "tests" / "real" / "tilting-lidar" / "dataset.yaml", data_);
+    fs::create_symlink(fs::canonical(scan), data_ / kScan);
+  }
+
+  const fs::path data_ = Path("lidar");
+};
+
+// JSON cannot hold it; what is not known is null, and that may only be where there is nothing to know.
+void ExpectNumbers(const Json& json, const std::string& where) {
+  EXPECT_FALSE(json.is_null()) << where;
+  if (json.is_number_float()) {
+    EXPECT_TRUE(std::isfinite(json.get<double>())) << where;
+  }
+  if (!json.is_structured()) return;
+  for (const auto& item : json.items()) ExpectNumbers(item.value(), where + "/" + item.key());
+}
+
+TEST_F(TiltingLidarTest, ItsOffsetsComeOutWhereTheDrawingHasThem) {
+  const Outcome outcome = Refine(data_);
+  ASSERT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 2) << ::testing::PrintToString(outcome);
+  EXPECT_EQ(outcome.err, "");
+  const Json result = Result();
+  EXPECT_EQ(result["status"], outcome.exit_code == 0 ? "ok" : "unreliable");
+  EXPECT_NEAR(ValueOf(result, "M"), 80, 60);
+  EXPECT_GT(ValueOf(result, "N"), -150);
+  EXPECT_LT(ValueOf(result, "N"), 60);
+  EXPECT_GT(UOf(result, "M"), 1);
+  EXPECT_LT(UOf(result, "M"), 60);
+  EXPECT_LT(std::abs(ValueOf(result, "M") - 80), 3 * UOf(result, "M"));
+  ASSERT_EQ(result["targets"].size(), 6U);
+  double set_aside = 0, missing = 0;
+  for (const Json& target : result["targets"]) {
+    set_aside += target["set_aside"].get<double>();
+    missing += target["missing"].get<double>();
+    EXPECT_GT(target["points"], 100) << target["name"];
+  }
+  EXPECT_GT(set_aside, 0);
+  EXPECT_GT(missing, 0);
+  ExpectNumbers(result, "");
+  EXPECT_THAT(outcome.out, HasSubstr("URG-04LX lidar on a tilt stand: turntable, lengths in m, angles in deg"));
+}
+
+TEST_F(TiltingLidarTest, TheScanIsHashedOnce) {
+  Refine(data_);
+  const Json result = Result();
+  ASSERT_EQ(result["inputs"].size(), 2U);
+  EXPECT_EQ(result["inputs"][1]["file"], kScan);
+}
+
+}  // namespace
+}  // namespace scancal

@@ -1,0 +1,179 @@
+#include "report/calibration_json.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <limits>
+#include "report/text.h"
+
+namespace scancal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+Calibration SomeCalibration() {
+  Calibration c;
+  c.model = "turntable";
+  c.name = "a plate";
+  c.residual = "depth";
+  for (const auto& [name, unit, role, value, u] : {std::tuple{"M", Unit::kMm, Role::kEstimate, 123.0021, 0.011},
+                                                   {"N", Unit::kMm, Role::kEstimate, 409.1, 0.02},
+                                                   {"tilt_x", Unit::kRad, Role::kConsider, 1e-3, 2e-4},
+                                                   {"tilt_y", Unit::kRad, Role::kHold, 0.0, 0.0}}) {
+    Parameter& p = c.parameters.emplace_back();
+    p.name = name;
+    p.unit = unit;
+    p.role = role;
+    p.value = value;
+    p.u = u;
+    p.k = 2;
+    p.U = 2 * u;
+    p.dof = 100;
+  }
+  c.estimated = {"M", "N"};
+  c.covariance = Eigen::Matrix2d{{1.21e-4, 3e-5}, {3e-5, 4e-4}};
+  c.grid = {{"M", "N"}, {123, 409}, 0.05, 1, 651};
+  c.targets = {{"left",
+                800,
+                3,
+                {{"off the line of their profile", 2}, {"off the plane of their target", 5}},
+                {{"normal", {0, -1, 0}}, {"distance", {480}}},
+                0.05}};
+  c.sigma = 0.05;
+  c.inputs = {{"left.csv", "abc"}};
+  c.command = "scancal refine data";
+  c.version = "0.1.0";
+  c.converged = true;
+  return c;
+}
+
+TEST(CalibrationJsonTest, ValuesArriveUnderTheirKeys) {
+  const Json json = ToJson(SomeCalibration());
+  EXPECT_EQ(json["scancal"], 1);
+  EXPECT_EQ(json["status"], "ok");
+  EXPECT_EQ(json["parameters"][0]["name"], "M");
+  EXPECT_EQ(json["parameters"][0]["role"], "estimate");
+  EXPECT_EQ(json["parameters"][0]["unit"], "mm");
+  EXPECT_EQ(json["parameters"][2]["role"], "consider");
+  EXPECT_EQ(json["parameters"][2]["unit"], "rad");
+  EXPECT_EQ(json["parameters"][2]["u"], 2e-4);
+  EXPECT_EQ(json["parameters"][3]["role"], "hold");
+  EXPECT_EQ(json["covariance"], Json({{1.21e-4, 3e-5}, {3e-5, 4e-4}}));
+  EXPECT_EQ(json["covariance_of"], Json({"M", "N"}));
+  EXPECT_EQ(json["targets"][0]["set_aside"], 7);
+  EXPECT_EQ(json["targets"][0]["missing"], 3);
+  EXPECT_EQ(json["targets"][0]["distance"], 480);
+  EXPECT_EQ(json["targets"][0]["normal"], Json({0.0, -1.0, 0.0}));
+  EXPECT_EQ(json["grid"]["M"], 123);
+  EXPECT_EQ(json["inputs"][0]["sha256"], "abc");
+}
+
+TEST(CalibrationJsonTest, WhatALaterCommandNeedsComesBack) {
+  const Calibration before = SomeCalibration();
+  // Through text, as on disk.
+  const auto after = CalibrationFromJson(Json::parse(ToJson(before).dump(2)), "calibration.json");
+  ASSERT_TRUE(after.ok()) << after.error().message;
+  EXPECT_EQ(after->model, before.model);
+  EXPECT_TRUE(after->ok());
+  ASSERT_EQ(after->parameters.size(), before.parameters.size());
+  for (size_t k = 0; k < before.parameters.size(); ++k) {
+    EXPECT_EQ(after->parameters[k].name, before.parameters[k].name);
+    EXPECT_EQ(after->parameters[k].value, before.parameters[k].value);  // to the last digit
+  }
+}
+
+TEST(CalibrationJsonTest, AnUnreliableOneStaysUnreliable) {
+  Calibration c = SomeCalibration();
+  c.unreliable = {"the grid minimum lies on the edge"};
+  const Json json = ToJson(c);
+  EXPECT_EQ(json["status"], "unreliable");
+  const auto after = CalibrationFromJson(json, "f");
+  ASSERT_TRUE(after.ok());
+  EXPECT_FALSE(after->ok());
+}
+
+TEST(CalibrationJsonTest, WhatIsNotFiniteIsNull) {
+  Calibration c = SomeCalibration();
+  c.parameters[0].u = std::numeric_limits<double>::infinity();
+  c.parameters[0].k = std::numeric_limits<double>::quiet_NaN();
+  c.covariance(0, 0) = std::numeric_limits<double>::infinity();
+  c.condition = std::numeric_limits<double>::infinity();
+  const Json json = ToJson(c);
+  EXPECT_TRUE(json["parameters"][0]["u"].is_null());
+  EXPECT_TRUE(json["parameters"][0]["k"].is_null());
+  EXPECT_TRUE(json["covariance"][0][0].is_null());
+  EXPECT_TRUE(json["condition"].is_null());
+}
+
+TEST(CalibrationJsonTest, WithoutAJackknifeThereIsNoUOfIt) {
+  EXPECT_TRUE(ToJson(SomeCalibration())["parameters"][0]["u_jackknife"].is_null());
+}
+
+TEST(CalibrationJsonTest, AnOldFileLoadsForEver) {  // the specification's example of version 1
+  const Json json = Json::parse(R"({"scancal": 1, "model": "turntable", "status": "ok", "warnings": [],
+    "parameters": [{"name": "M", "unit": "mm", "role": "estimate", "value": 123.0021, "u": 0.011, "k": 2.04, "U": 0.022,
+                    "dof": 31, "u_naive": 0.004, "u_clustered": 0.011, "u_jackknife": 0.02}],
+    "covariance": [[1.2e-4, 0.0], [0.0, 1.1e-4]], "something new": {}})");
+  const auto calibration = CalibrationFromJson(json, "f");
+  ASSERT_TRUE(calibration.ok()) << calibration.error().message;
+  EXPECT_EQ(calibration->Find("M")->value, 123.0021);
+}
+
+TEST(CalibrationJsonTest, OtherDocumentsAreErrorsNotCrashes) {
+  for (const char* text :
+       {"5", "[]", "null", "{}", R"({"scancal": "1"})", R"({"scancal": 2})", R"({"scancal": 1.5})", R"({"scancal": 1})",
+        R"({"scancal": 1, "model": 5})", R"({"scancal": 1, "model": "turntable", "status": "ok"})",
+        R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": {}})",
+        R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [5]})",
+        R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [{"name": "M"}]})",
+        R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [{"name": "M", "value": "1"}]})",
+        R"({"scancal": 1, "model": "turntable", "status": 5, "parameters": []})"}) {
+    const auto calibration = CalibrationFromJson(Json::parse(text), "some.json");
+    ASSERT_FALSE(calibration.ok()) << text;
+    EXPECT_THAT(calibration.error().message, AllOf(StartsWith("some.json: expected "), HasSubstr("calibration.json?")))
+        << text;
+  }
+}
+
+TEST(TextTest, TheReportNamesEverythingThatMatters) {
+  Calibration c = SomeCalibration();
+  c.warnings = {"a first warning", "a second"};
+  const std::string text = ToText(c);
+  EXPECT_THAT(text, AllOf(HasSubstr("123.002(11)"), HasSubstr("409.100(20)"), HasSubstr("considered"),
+                          HasSubstr("set aside: left: 2 points off the line"),
+                          HasSubstr("set aside: left: 5 points off the plane"), HasSubstr("warning: a first warning\n"),
+                          HasSubstr("warning: a second\n")));
+  EXPECT_THAT(text, AllOf(HasSubstr("not a traceable uncertainty"), HasSubstr("\nstatus: ok\n")));
+  EXPECT_THAT(text, Not(HasSubstr("tilt_y")));  // held at 0: nothing to tell
+  EXPECT_THAT(text, Not(HasSubstr("nan")));
+}
+
+TEST(TextTest, DeclaredInfluencesDropTheFootnote) {
+  Calibration c = SomeCalibration();
+  c.budget.resize(2);
+  EXPECT_THAT(ToText(c), Not(HasSubstr("traceable")));
+}
+
+TEST(TextTest, TheReasonsOfAnUnreliableResultComeLast) {
+  Calibration c = SomeCalibration();
+  c.unreliable = {"the refinement did not converge"};
+  EXPECT_THAT(ToText(c), HasSubstr("unreliable: the refinement did not converge\nstatus: unreliable\n"));
+}
+
+TEST(TextTest, ARowThatWasLeftOutIsExplained) {
+  Comparison comparison{{"M", "N"}, {false, false}, {}};
+  ComparisonRow grid, joint;
+  grid.method = "grid, step 0.001";
+  grid.note = "left out: 1e+09 nodes";
+  joint.method = "joint, depth";
+  joint.values = {123.0021, 409.1};
+  joint.u = {0.011, 0.02};
+  comparison.rows = {grid, joint};
+  const std::string text = ToText(comparison);
+  EXPECT_THAT(text, AllOf(HasSubstr("grid, step 0.001: left out: 1e+09 nodes\n"), HasSubstr("123.002(11)"),
+                          HasSubstr("409.100(20)"), HasSubstr("ΔM/u")));
+}
+
+}  // namespace
+}  // namespace scancal
