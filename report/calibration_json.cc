@@ -45,10 +45,13 @@ Json BudgetJson(const Calibration& calibration) {
   Json lines = Json::array();
   for (const BudgetLine& line : calibration.budget)
     lines.push_back({{"source", line.source},
+                     {"type", std::string(1, line.type)},
                      {"value", Number(line.u)},
                      {"unit", Name(line.unit)},
                      {"sensitivity", ByParameter(calibration.estimated, line.sensitivity)},
-                     {"u", ByParameter(calibration.estimated, line.contribution)}});
+                     {"u", ByParameter(calibration.estimated, line.contribution)},
+                     {"share", ByParameter(calibration.estimated, line.share)},
+                     {"dof", Number(line.dof)}});
   return lines;
 }
 

@@ -11,7 +11,13 @@ size_t Width(const std::string& text) {
   return static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-std::string Fixed(double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); }
+// Without the sign of a zero.
+std::string Fixed(double value, int decimals) {
+  const std::string text = fmt::format("{:.{}f}", value, decimals);
+  return text.find_first_of("123456789") == std::string::npos && text[0] == '-' ? text.substr(1) : text;
+}
+
+std::string NotANumber(double value) { return std::isnan(value) ? "-" : value > 0 ? "infinite" : "-infinite"; }
 
 }  // namespace
 
@@ -43,15 +49,17 @@ std::string TextTable::Text() const {
 std::string Count(double number) { return std::isfinite(number) ? Fixed(number, 0) : "infinite"; }
 
 std::string Significant(double value, int digits) {
-  if (!std::isfinite(value)) return std::isnan(value) ? "-" : "infinite";
-  const double size = std::abs(value);
-  if (size != 0 && (size < 1e-4 || size >= 1e6)) return fmt::format("{:.{}e}", value, digits - 1);
-  const int before = size == 0 ? 1 : static_cast<int>(std::floor(std::log10(size))) + 1;
-  return Fixed(value, std::max(0, digits - before));
+  if (!std::isfinite(value)) return NotANumber(value);
+  if (value == 0) return Fixed(0, digits - 1);
+  // The exponent after rounding: 0.0999 to two digits is 0.10.
+  const std::string scientific = fmt::format("{:.{}e}", value, digits - 1);
+  const int exponent = std::stoi(scientific.substr(scientific.find('e') + 1));
+  if (exponent < -4 || exponent >= 6) return scientific;
+  return Fixed(value, std::max(0, digits - 1 - exponent));
 }
 
 std::string Concise(double value, double u) {
-  if (!std::isfinite(u) || !(u > 0)) return Significant(value, 6);
+  if (!std::isfinite(value) || !std::isfinite(u) || !(u > 0)) return Significant(value, 6);
   // Two digits of u; 0.0996 rounds to 0.10, which shifts the last place by one.
   int last = static_cast<int>(std::floor(std::log10(u))) - 1;
   if (std::round(u / std::pow(10, last)) >= 100) ++last;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include "solver/uncertainty/covariance.h"
 #include "solver/uncertainty/coverage.h"
 #include "solver/uncertainty/jackknife.h"
@@ -11,6 +12,7 @@ namespace scancal {
 namespace {
 
 constexpr double kCoverage = 0.95;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSuspicious = 0.001;  // a warning that a right data set raises once in a thousand
 
 double DataSumOfSquares(const Solution& solution, size_t target) {
@@ -54,7 +56,6 @@ Eigen::MatrixXd Headline(const Eigen::MatrixXd& clustered, const Budget& budget)
 }
 
 std::vector<double> Plain(const Eigen::VectorXd& x) { return {x.data(), x.data() + x.size()}; }
-std::vector<double> Deviations(const Eigen::MatrixXd& covariance) { return Plain(covariance.diagonal().cwiseSqrt()); }
 
 std::string LeastDetermined(const std::map<std::string, double>& direction) {
   const auto worst = std::max_element(direction.begin(), direction.end(), [](const auto& a, const auto& b) {
@@ -64,13 +65,17 @@ std::string LeastDetermined(const std::map<std::string, double>& direction) {
   return "; " + worst->first + " is least determined: allow more iterations, hold it or give it a prior";
 }
 
-void AddBudget(const Solution& solution, const Eigen::MatrixXd& clustered, const Budget& budget, Calibration* result) {
-  result->budget.push_back({"residuals, clustered by view", Unit::kMm, result->sigma, {}, Deviations(clustered)});
+void AddBudget(const Solution& solution, const Covariance& clustered, const Budget& budget, Calibration* result) {
+  const auto add = [&](BudgetLine line, const Eigen::MatrixXd& covariance) {
+    line.contribution = Plain(covariance.diagonal().cwiseSqrt());
+    line.share = Plain(covariance.diagonal().cwiseQuotient(result->covariance.diagonal()));
+    result->budget.push_back(line);
+  };
+  add({"residuals, clustered by view", 'A', Unit::kMm, result->sigma, {}, {}, {}, clustered.dof}, clustered.matrix);
   for (const Contribution& line : budget.lines)
     for (const Quantity& quantity : solution.problem.quantities)
       if (line.sensitivity.size() && quantity.Source() == line.source)
-        result->budget.push_back(
-            {line.source, quantity.unit, quantity.u, Plain(line.sensitivity), Deviations(line.covariance)});
+        add({line.source, 'B', quantity.unit, quantity.u, Plain(line.sensitivity), {}, {}, kInfinity}, line.covariance);
 }
 
 void WarnOfJackknife(const Solution& solution, const Jackknife& jackknife, double clustered_dof, Calibration* result) {
@@ -78,6 +83,8 @@ void WarnOfJackknife(const Solution& solution, const Jackknife& jackknife, doubl
   const ExpectedJackknife expected = ExpectLeaveOneTargetOut(solution.problem, solution.linear);
   for (size_t k = 0; k < result->estimated.size(); ++k) {
     const auto e = static_cast<Eigen::Index>(k);
+    // What no target moves, because only its prior or a declaration holds it, is rounding over rounding.
+    if (!(expected.variance[e] > 1e-12 * result->covariance(e, e))) continue;
     const double ratio = jackknife.covariance(e, e) / expected.variance[e];
     if (FUpperTail(ratio, expected.dof[e], clustered_dof) < kSuspicious)
       result->warnings.push_back(
@@ -154,7 +161,7 @@ Calibration Summarize(const Solution& solution, double sigma, const PureError& p
       estimated.size() + problem.With({Scope::kTarget}, Role::kEstimate).size() * problem.targets.size());
   result.sigma = std::sqrt(sum_of_squares / std::max(1.0, count - quantities));
   result.lack_of_fit = JudgeFit(sum_of_squares, count - quantities, pure_error);
-  AddBudget(solution, clustered.matrix, budget, &result);
+  AddBudget(solution, clustered, budget, &result);
   for (Eigen::Index t = 0; t < jackknife.estimates.rows(); ++t)
     result.jackknife.push_back(Plain(jackknife.estimates.row(t).transpose()));
   WarnOfJackknife(solution, jackknife, clustered.dof, &result);

@@ -37,10 +37,13 @@ struct GridMinimum {
 
 struct BudgetLine {
   std::string source;
+  char type = 'A';  // A: from the data; B: declared
   Unit unit = Unit::kOne;
   double u = 0;                      // of the source
   std::vector<double> sensitivity;   // per estimated parameter
   std::vector<double> contribution;  // u per estimated parameter
+  std::vector<double> share;         // of the parameter's variance
+  double dof = 0;                    // infinite for what was declared
 };
 
 struct LackOfFit {              // of everything within views against everything between them; a warning, no verdict

@@ -32,6 +32,9 @@ double UnitFactor(Unit unit, const Units& units) {
   return units.Of(unit == Unit::kMm ? Dimension::kLength : unit == Unit::kRad ? Dimension::kAngle : Dimension::kNone);
 }
 
+// Of a line or a column: 1 or more.
+bool IsWhole(double number) { return number >= 1 && number <= 1e9 && std::floor(number) == number; }
+
 std::optional<WideLayout> ReadLayout(YamlMap map) {
   if (!map.Has("layout")) return std::nullopt;
   YamlMap layout = map.Map("layout");
@@ -39,10 +42,14 @@ std::optional<WideLayout> ReadLayout(YamlMap map) {
   wide.value = layout.Text("wide");
   if (wide.value != "y" && wide.value != "range") layout.Fail("wide", "expected y or range");
   wide.across = wide.value == "range" ? "bearing" : "z";
-  wide.angle_column = static_cast<int>(layout.Number("angle_column", 1));
-  wide.first_column = static_cast<int>(layout.Number("first_column", 2));
-  if (wide.angle_column < 1) layout.Fail("angle_column", "expected a column number, 1 or more");
-  if (wide.first_column < 1) layout.Fail("first_column", "expected a column number, 1 or more");
+  const auto column = [&](const char* key, int otherwise) {
+    const double number = layout.Number(key, otherwise);
+    if (IsWhole(number)) return static_cast<int>(number);
+    layout.Fail(key, "expected a column number, 1 or more");
+    return otherwise;
+  };
+  wide.angle_column = column("angle_column", 1);
+  wide.first_column = column("first_column", 2);
   wide.start = layout.Number("start");
   wide.step = layout.Number("step");
   if (wide.step == 0) layout.Fail("step", "expected a step that is not zero");
@@ -55,8 +62,11 @@ void ReadKeep(YamlMap target, const Units& units, ScanDeclaration* scan) {
   for (const std::string& column : keep.Keys()) {
     const std::array<double, 2> interval = keep.Interval(column);
     if (column == "lines") {
-      if (interval[0] < 1) keep.Fail(column, "expected line numbers, the first line is 1");
-      scan->format.lines = {static_cast<int64_t>(interval[0]), static_cast<int64_t>(interval[1])};
+      if (IsWhole(interval[0]) && IsWhole(interval[1])) {
+        scan->format.lines = {static_cast<int64_t>(interval[0]), static_cast<int64_t>(interval[1])};
+      } else {
+        keep.Fail(column, "expected whole line numbers, the first line is 1");
+      }
     } else {
       const double unit = units.Of(DimensionOf(column));
       scan->keep.push_back({column, interval[0] * unit, interval[1] * unit});

@@ -11,6 +11,7 @@ double CoverageFactor(double coverage, double dof) {
 }
 
 double FUpperTail(double f, double dof1, double dof2) {
+  if (!(f > 0)) return 1;
   return boost::math::cdf(boost::math::complement(boost::math::fisher_f(dof1, dof2), f));
 }
 

@@ -145,7 +145,7 @@ TEST_F(VerdictsOfProgramTest, NoConvergenceIsUnreliable) {
   EXPECT_EQ(result["converged"], false);
   const std::string reasons = Sentences(result, "unreliable");
   EXPECT_THAT(reasons, HasSubstr("did not converge"));
-  EXPECT_THAT(reasons, HasSubstr("--max_iterations")) << "names no remedy";
+  EXPECT_THAT(reasons, HasSubstr("more iterations")) << "names no remedy";
   EXPECT_TRUE(reasons.find("tilt_x") != std::string::npos || reasons.find("tilt_y") != std::string::npos ||
               reasons.find("M ") != std::string::npos || reasons.find("N ") != std::string::npos)
       << "names no parameter: " << reasons;

@@ -19,7 +19,6 @@ TEST(ConciseTest, RoundingMayShiftTheLastDigit) {
   EXPECT_EQ(Concise(1.23456, 0.0994), "1.235(99)");
   EXPECT_EQ(Concise(123.456, 0.996), "123.5(10)");
   EXPECT_EQ(Concise(1234.56, 9.96), "1235(10)");
-  EXPECT_EQ(Concise(1234.56, 99.6), "1230(100)");
 }
 
 TEST(ConciseTest, PowersOfTen) {
@@ -29,15 +28,15 @@ TEST(ConciseTest, PowersOfTen) {
   EXPECT_EQ(Concise(5, 1), "5.0(10)");
 }
 
-TEST(ConciseTest, ULargerThanOneKeepsItsPoint) {
-  // "123.9(39)" would be read as 0.39 or 39 by nobody: units of the last digit, as everywhere else.
+TEST(ConciseTest, ULargerThanOneToo) {
   EXPECT_EQ(Concise(123.93, 3.9), "123.9(39)");
   EXPECT_EQ(Concise(123.93, 39), "124(39)");
 }
 
-TEST(ConciseTest, ManyDigitsOfUAreRounded) {
-  EXPECT_EQ(Concise(181.3, 1477.4), "200(1500)");
-  EXPECT_EQ(Concise(12345.6, 123.4), "12350(120)");
+TEST(ConciseTest, FromAHundredOnUStandsWhole) {
+  EXPECT_EQ(Concise(1234.56, 99.6), "1235(100)");
+  EXPECT_EQ(Concise(181.3, 1477.4), "181(1477)");
+  EXPECT_EQ(Concise(12345.6, 123.4), "12346(123)");
 }
 
 TEST(ConciseTest, NegativeValues) {
