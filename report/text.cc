@@ -36,13 +36,26 @@ std::string Targets(const Calibration& c) {
   return table.Text() + reasons;
 }
 
+// Where u comes from, if anything but the residuals was declared.
+std::string BudgetText(const Calibration& c) {
+  std::vector<std::string> header = {"u comes from", "type", "u", "unit"};
+  for (const std::string& name : c.estimated) header.push_back("u(" + name + ")");
+  TextTable table(header);
+  for (const BudgetLine& line : c.budget) {
+    std::vector<std::string> row = {line.source, std::string(1, line.type), Significant(line.u, 2), Name(line.unit)};
+    for (const double u : line.contribution) row.push_back(Significant(u, 2));
+    table.Add(row);
+  }
+  return table.Text();
+}
+
 bool HasDeclared(const Calibration& c) { return c.budget.size() > 1; }
 
 }  // namespace
 
 std::string ToText(const Calibration& c) {
   std::string text = Parameters(c);
-  if (!HasDeclared(c)) text += "u: repeatability and fit only, not a traceable uncertainty\n";
+  text += HasDeclared(c) ? "\n" + BudgetText(c) : "u: repeatability and fit only, not a traceable uncertainty\n";
   text += "\n" + Targets(c) + "\n";
   text += "grid search: ";
   for (size_t k = 0; k < c.grid.at.size(); ++k)

@@ -5,7 +5,6 @@
 #include "io/output_file.h"
 #include "io/progress.h"
 #include "models/turntable/turntable_scanner.h"
-#include "solver/uncertainty/covariance.h"
 
 namespace scancal {
 namespace {
@@ -50,11 +49,11 @@ std::optional<double> HeldOutRms(const std::vector<Placement>& placements, const
   return std::sqrt(squares / points);
 }
 
-ComparisonRow GridRow(const std::vector<Placement>& placements, const TurntableStart& start, GridBox box, double step,
-                      PlaneFit kind) {
+ComparisonRow GridRow(const TurntableScanner& scanner, const TurntableStart& start, double step, PlaneFit kind) {
   const std::string name =
       fmt::format("grid, {}, step {:g}", kind == PlaneFit::kVertical ? "as published" : "orthogonal", step);
   Progress progress(name);
+  GridBox box = scanner.Box();
   box.step = step;
   ComparisonRow row;
   row.method = name;
@@ -74,20 +73,20 @@ ComparisonRow GridRow(const std::vector<Placement>& placements, const TurntableS
       },
       kThreads, [&](double fraction) { progress.Show(fraction); });
   row.seconds = watch.Seconds();
-  TurntablePose pose = start.pose;
+  TurntablePose pose = scanner.Nominal();
   pose.M = grid.best.at[0];
   pose.N = grid.best.at[1];
   row.values = Values(pose);
   row.u.resize(row.values.size());
   row.S = grid.best.value;
-  row.rms = FlatnessAt(placements, pose, kind).rms;
+  row.rms = FlatnessAt(scanner.placements(), pose, kind).rms;
   if (grid.best.on_edge) row.note = "minimum on the edge";
   std::vector<TurntablePose> without(grid.without.size(), pose);
   for (size_t t = 0; t < without.size(); ++t) {
     without[t].M = grid.without[t].at[0];
     without[t].N = grid.without[t].at[1];
   }
-  row.held_out_rms = HeldOutRms(placements, without);
+  row.held_out_rms = HeldOutRms(scanner.placements(), without);
   return row;
 }
 
@@ -105,11 +104,9 @@ ComparisonRow JointRow(const TurntableScanner& scanner, const TurntableStart& st
   if (!fit.solution.observability.undetermined.empty()) {
     row.note = "not determined: " + fit.solution.observability.undetermined.front();
   } else {
-    const Covariance clustered = ClusteredCovariance(fit.solution.problem, fit.solution.linear);
-    Eigen::Index e = 0;
-    for (const int k : fit.solution.problem.With({Scope::kSystem}, Role::kEstimate)) {
-      if (k <= Turntable::kTiltY) row.u[k] = std::sqrt(clustered.matrix(e, e));
-      ++e;
+    for (const Parameter& parameter : Summarize(fit.solution, fit.sigma, {}).parameters) {
+      const int k = Find(fit.solution.problem.quantities, parameter.name);
+      if (k <= Turntable::kTiltY && parameter.role == Role::kEstimate) row.u[k] = parameter.u;
     }
     if (!fit.solution.fit.converged) row.note = "no convergence";
   }
@@ -129,7 +126,7 @@ Result<Comparison> TurntableScanner::Compare() const {
   SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
   Comparison comparison{{"M", "N", "tilt_x", "tilt_y"}, {false, false, true, true}, {}};
   for (const PlaneFit kind : {PlaneFit::kVertical, PlaneFit::kOrthogonal})
-    for (const double step : kSteps) comparison.rows.push_back(GridRow(placements_, start, Box(), step, kind));
+    for (const double step : kSteps) comparison.rows.push_back(GridRow(*this, start, step, kind));
   using enum Turntable::Residuals;
   comparison.rows.push_back(JointRow(*this, start, "joint, point to plane", kPlane, {}));
   comparison.rows.push_back(JointRow(*this, start, "joint, depth", kDepth, {}));

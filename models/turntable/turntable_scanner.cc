@@ -65,6 +65,8 @@ TurntableScanner::TurntableScanner(TurntableDeclaration declaration, Turntable m
 
 GridBox TurntableScanner::Box() const { return BoxOf(declaration_, model_); }
 
+TurntablePose TurntableScanner::Nominal() const { return PoseOf(model_.quantities()); }
+
 GridResult TurntableScanner::Search(const std::vector<PlaneStorey>& storeys) const {
   Progress progress("searching M, N");
   const auto rmse = [&](const std::array<double, 2>& at, std::span<double> values) {
@@ -75,7 +77,7 @@ GridResult TurntableScanner::Search(const std::vector<PlaneStorey>& storeys) con
 
 Result<TurntableStart> TurntableScanner::Initialize() const {
   TurntableStart start;
-  const TurntablePose nominal = PoseOf(model_.quantities()), middle = MiddleOf(Box(), model_);
+  const TurntablePose nominal = Nominal(), middle = MiddleOf(Box(), model_);
   start.storeys = Storeys(placements_, nominal);
   SCANCAL_RETURN_IF_ERROR(CheckOrientations(model_.quantities(), placements_, start.storeys, middle));
   start.grid = Search(start.storeys);

@@ -46,6 +46,7 @@ class TurntableScanner final : public Scanner {
   TurntableFit Fit(const TurntablePose& pose, Turntable::Residuals residuals, const std::vector<int>& estimate = {},
                    std::optional<size_t> without = {}, int max_iterations = 100) const;
   const std::vector<Placement>& placements() const { return placements_; }
+  TurntablePose Nominal() const;  // every quantity as declared: what the search uses for all but M and N
   // The box of the search with the declared step.
   GridBox Box() const;
 
