@@ -1,4 +1,5 @@
 #include "io/scan_columns.h"
+#include <algorithm>
 #include "io/message.h"
 
 namespace scancal {
@@ -44,6 +45,15 @@ Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const 
       return Error{place + ": found the columns " + Listed(found) + ", expected also " + PossibleNames(wanted)};
     }
     if (match) chosen.push_back(*match);
+  }
+  const auto has = [&](const std::string& name) {
+    return std::any_of(chosen.begin(), chosen.end(), [&](const ChosenColumn& column) { return column.name == name; });
+  };
+  const auto whole = [&](const auto& group) { return std::all_of(group.begin(), group.end(), has); };
+  if (!format.one_of.empty() && std::none_of(format.one_of.begin(), format.one_of.end(), whole)) {
+    std::string groups;
+    for (const auto& group : format.one_of) groups += (groups.empty() ? "" : "; or ") + Listed(group);
+    return Error{place + ": found the columns " + Listed(found) + ", expected also " + groups};
   }
   if (chosen.empty()) return Error{place + ": found the columns " + Listed(found) + ", none of them is known"};
   return chosen;

@@ -28,10 +28,11 @@ struct WideLayout {            // one profile per line
 
 struct ScanFormat {  // how one scan file is to be read, as the data set declares it
   std::filesystem::path path;
-  Units units;                           // a unit suffix of a column's name (angle_deg, y_mm) wins
-  std::vector<ScanColumn> columns;       // wanted; others in the file are ignored
-  std::vector<std::string> npy_columns;  // names of the columns of a .npy
-  std::optional<double> invalid;         // this value, as it stands in the file, is a missing point
+  Units units;                                   // a unit suffix of a column's name (angle_deg, y_mm) wins
+  std::vector<ScanColumn> columns;               // wanted; others in the file are ignored
+  std::vector<std::vector<std::string>> one_of;  // of these groups the file needs one whole; empty: any will do
+  std::vector<std::string> npy_columns;          // names of the columns of a .npy
+  std::optional<double> invalid;                 // this value, as it stands in the file, is a missing point
   std::optional<WideLayout> layout;
   std::optional<std::pair<int64_t, int64_t>>
       lines;  // keep only these lines of the file (rows of a .npy), 1-based, inclusive

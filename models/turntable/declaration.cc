@@ -89,6 +89,7 @@ ScanDeclaration ReadTarget(YamlMap target, const YamlMap& top, const Dataset& da
     if (map.Has("invalid")) scan.format.invalid = map.Number("invalid");
   }
   ReadKeep(target, dataset.units, &scan);
+  scan.format.one_of = {{"y", "z"}, {"bearing", "range"}};
   for (const auto& [name, dimension] : kColumns) scan.format.columns.push_back({name, dimension, name == "angle"});
   for (const KeepInterval& keep : scan.keep)
     if (!kColumns.contains(keep.column)) scan.format.columns.push_back({keep.column, Dimension::kNone, true});

@@ -71,7 +71,7 @@ class Gatherer {
 
 }  // namespace
 
-Result<SensorColumns> ToSensor(const ScanDeclaration& scan, double sense, const ScanBatch& batch) {
+SensorColumns ToSensor(double sense, const ScanBatch& batch) {
   SensorColumns points;
   points.alpha = batch.columns[batch.Find("angle")];
   for (double& alpha : points.alpha) alpha *= sense;
@@ -84,12 +84,9 @@ Result<SensorColumns> ToSensor(const ScanDeclaration& scan, double sense, const 
       points.y[i] = points.range[i] * std::cos(batch.columns[bearing][i]);
       points.z[i] = points.range[i] * std::sin(batch.columns[bearing][i]);
     }
-  } else if (y >= 0 && z >= 0) {
+  } else {  // the reader has made sure of them
     points.y = batch.columns[y];
     points.z = batch.columns[z];
-  } else {
-    return Error{scan.format.path.string() + ": of the columns that are known, found only " + Listed(batch.names) +
-                 "; expected angle with y and z, or with bearing and range, in lower case"};
   }
   return points;
 }
@@ -102,7 +99,7 @@ Result<RawScan> ReadRawScan(const ScanDeclaration& scan, double sense) {
   for (;;) {
     SCANCAL_ASSIGN_OR_RETURN(const bool more, reader.Next(&batch));
     if (!more) break;
-    SCANCAL_ASSIGN_OR_RETURN(const SensorColumns points, ToSensor(scan, sense, batch));
+    const SensorColumns points = ToSensor(sense, batch);
     SCANCAL_ASSIGN_OR_RETURN(const std::vector<char> kept, Kept(scan, batch, points));
     const int profile = batch.Find("profile");
     for (size_t i = 0; i < batch.size(); ++i) {

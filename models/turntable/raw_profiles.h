@@ -28,6 +28,6 @@ Result<RawScan> ReadRawScan(const ScanDeclaration& scan, double sense);
 struct SensorColumns {
   std::vector<double> alpha, y, z, range;
 };
-Result<SensorColumns> ToSensor(const ScanDeclaration& scan, double sense, const ScanBatch& batch);
+SensorColumns ToSensor(double sense, const ScanBatch& batch);
 
 }  // namespace scancal

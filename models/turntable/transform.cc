@@ -45,7 +45,7 @@ Result<int64_t> TransformTurntable(const Dataset& dataset, const Calibration& ca
     for (;;) {
       SCANCAL_ASSIGN_OR_RETURN(const bool more, reader.Next(&batch));
       if (!more) break;
-      SCANCAL_ASSIGN_OR_RETURN(const SensorColumns sensor, ToSensor(scan, declaration.sense, batch));
+      const SensorColumns sensor = ToSensor(declaration.sense, batch);
       transformed.clear();
       for (size_t i = 0; i < batch.size(); ++i) {
         const Eigen::Vector3d p = pose.Point(sensor.alpha[i], sensor.y[i], sensor.z[i]);

@@ -2,6 +2,7 @@
 #pragma once
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -15,8 +16,10 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() /
-            ("scancal's test " + std::to_string(::getpid()) + " " + test->test_suite_name() + "." + test->name());
+    std::string name =
+        "scancal's test " + std::to_string(::getpid()) + " " + test->test_suite_name() + "." + test->name();
+    std::replace(name.begin(), name.end(), '/', '_');  // of typed tests
+    path_ = std::filesystem::temp_directory_path() / name;
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

@@ -14,8 +14,8 @@ constexpr double kDegree = M_PI / 180;
 struct Study {
   Eigen::Vector2d mean = {0, 0}, scatter = {0, 0};  // of the errors of M, N, mm
   Eigen::Vector2d naive = {0, 0}, clustered = {0, 0}, jackknife = {0, 0}, expected_jackknife = {0, 0};  // rms of u
-  double lack_of_fit = 0;       // mean F
-  int warned_of_jackknife = 0;  // trials
+  double lack_of_fit = 0;                                                                               // mean F
+  int warned_of_jackknife = 0;                                                                          // trials
 };
 
 Study Repeat(TurntableScene scene, Turntable::Residuals residuals, int trials) {
