@@ -81,7 +81,9 @@ int Main(int argc, char** argv) {
       return kTrusted;
     }
     if (const int refused = RefuseForeignFlags(*command)) return refused;
-    return command->run({argv + 2, argv + argc});
+    const int code = command->run({argv + 2, argv + argc});
+    if (std::fflush(stdout) != 0 || std::ferror(stdout)) return Complain("standard output could not be written");
+    return code;
   }
   PrintOverview();
   return Complain(std::string("found command \"") + argv[1] + "\", expected one of those above");

@@ -23,7 +23,7 @@ std::string Parameters(const Calibration& c) {
 }
 
 std::string Targets(const Calibration& c) {
-  TextTable table({"target", "points", "missing", "set aside", "rms/mm"});
+  TextTable table({"target", "points", "missing in scan", "set aside", "rms(" + c.residual + ")/mm"});
   std::string reasons;
   for (const TargetSummary& target : c.targets) {
     double set_aside = 0;
@@ -70,7 +70,7 @@ std::string ToText(const Calibration& c) {
             Count(c.lack_of_fit.dof2) + " degrees of freedom, p " +
             (c.lack_of_fit.p < 1e-16 ? "< 1e-16" : "= " + Significant(c.lack_of_fit.p, 2)) + ")\n";
   if (c.condition > 0) {
-    text += "condition: " + Significant(c.condition, 3) + "; least determined direction:";
+    text += "condition: " + Significant(c.condition, 3) + "; least determined direction (by white noise):";
     for (const auto& [name, component] : c.weakest) text += " " + name + " " + Significant(component, 2);
     text += "\n";
   }
@@ -85,8 +85,8 @@ std::string ToText(const Comparison& comparison) {
   std::vector<std::string> header = {"method"};
   for (size_t k = 0; k < comparison.parameters.size(); ++k)
     header.push_back(comparison.parameters[k] + (comparison.is_angle[k] ? "/mrad" : "/mm"));
-  for (const char* column :
-       {"S/um", "rms/um", "held out/um", "u(M)/um", "u(N)/um", "step/√12/um", "ΔM/u", "ΔN/u", "nodes, iter.", "s"})
+  for (const char* column : {"S/um", "plane rms/um", "held out/um", "u(M)/um", "u(N)/um", "step/√12/um", "ΔM/u", "ΔN/u",
+                             "nodes, iter.", "s"})
     header.push_back(column);
   TextTable table(header);
   std::string notes;

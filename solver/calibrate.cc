@@ -1,8 +1,8 @@
 #include "solver/calibrate.h"
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include "solver/judge.h"
 #include "solver/uncertainty/covariance.h"
 #include "solver/uncertainty/coverage.h"
 #include "solver/uncertainty/jackknife.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kCoverage = 0.95;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSuspicious = 0.001;  // a warning that a right data set raises once in a thousand
+constexpr double kRounding_mm = 1e-9;  // a pure error below this is none
 
 double DataSumOfSquares(const Solution& solution, size_t target) {
   const LinearTarget& rows = solution.linear.targets[target];
@@ -37,7 +37,7 @@ LackOfFit JudgeFit(double sum_of_squares, double dof, const PureError& pure) {
   result.pure_error_sigma = pure.sigma();
   result.dof1 = dof - pure.dof;
   result.dof2 = pure.dof;
-  if (result.dof1 < 1 || result.dof2 < 1 || !(result.pure_error_sigma > 0)) {
+  if (result.dof1 < 1 || result.dof2 < 1 || !(result.pure_error_sigma > kRounding_mm)) {
     result.dof1 = result.dof2 = 0;
     return result;
   }
@@ -57,14 +57,6 @@ Eigen::MatrixXd Headline(const Eigen::MatrixXd& clustered, const Budget& budget)
 
 std::vector<double> Plain(const Eigen::VectorXd& x) { return {x.data(), x.data() + x.size()}; }
 
-std::string LeastDetermined(const std::map<std::string, double>& direction) {
-  const auto worst = std::max_element(direction.begin(), direction.end(), [](const auto& a, const auto& b) {
-    return std::abs(a.second) < std::abs(b.second);
-  });
-  if (worst == direction.end()) return "";
-  return "; " + worst->first + " is least determined: allow more iterations, hold it or give it a prior";
-}
-
 void AddBudget(const Solution& solution, const Covariance& clustered, const Budget& budget, Calibration* result) {
   const auto add = [&](BudgetLine line, const Eigen::MatrixXd& covariance) {
     line.contribution = Plain(covariance.diagonal().cwiseSqrt());
@@ -76,23 +68,6 @@ void AddBudget(const Solution& solution, const Covariance& clustered, const Budg
     for (const Quantity& quantity : solution.problem.quantities)
       if (line.sensitivity.size() && quantity.Source() == line.source)
         add({line.source, 'B', quantity.unit, quantity.u, Plain(line.sensitivity), {}, {}, kInfinity}, line.covariance);
-}
-
-void WarnOfJackknife(const Solution& solution, const Jackknife& jackknife, double clustered_dof, Calibration* result) {
-  if (jackknife.estimates.rows() < 2 || clustered_dof < 1) return;
-  const ExpectedJackknife expected = ExpectLeaveOneTargetOut(solution.problem, solution.linear);
-  for (size_t k = 0; k < result->estimated.size(); ++k) {
-    const auto e = static_cast<Eigen::Index>(k);
-    // What no target moves, because only its prior or a declaration holds it, is rounding over rounding.
-    if (!(expected.variance[e] > 1e-12 * result->covariance(e, e))) continue;
-    const double ratio = jackknife.covariance(e, e) / expected.variance[e];
-    if (FUpperTail(ratio, expected.dof[e], clustered_dof) < kSuspicious)
-      result->warnings.push_back(
-          fmt::format("{}: leaving one target out moves it {:.2g} times as far as its u explains; the targets "
-                      "disagree, so u is probably "
-                      "too small",
-                      result->estimated[k], std::sqrt(ratio)));
-  }
 }
 
 }  // namespace
@@ -164,16 +139,7 @@ Calibration Summarize(const Solution& solution, double sigma, const PureError& p
   AddBudget(solution, clustered, budget, &result);
   for (Eigen::Index t = 0; t < jackknife.estimates.rows(); ++t)
     result.jackknife.push_back(Plain(jackknife.estimates.row(t).transpose()));
-  WarnOfJackknife(solution, jackknife, clustered.dof, &result);
-  if (result.lack_of_fit.dof1 > 0 && result.lack_of_fit.p < kSuspicious)
-    result.warnings.push_back(
-        fmt::format("lack of fit: F = {:.3g}: views differ by more than the noise within them explains; "
-                    "the naive uncertainty "
-                    "is too small, the clustered one allows for it if it differs from view to view",
-                    result.lack_of_fit.F, result.lack_of_fit.p));
-  if (!solution.fit.converged)
-    result.unreliable.push_back("the refinement did not converge: " + solution.fit.message +
-                                LeastDetermined(result.weakest));
+  Judge(solution, jackknife, clustered.dof, &result);
   return result;
 }
 

@@ -96,6 +96,11 @@ ScanDeclaration ReadTarget(YamlMap target, const YamlMap& top, const Dataset& da
   return scan;
 }
 
+bool SamePoints(const ScanDeclaration& a, const ScanDeclaration& b) {
+  return a.format.path.lexically_normal() == b.format.path.lexically_normal() && a.format.lines == b.format.lines &&
+         a.keep == b.keep;
+}
+
 GridBox ReadSearch(YamlMap top, const Units& units) {
   YamlMap search = top.Map("search");
   GridBox box;
@@ -196,7 +201,12 @@ Result<TurntableDeclaration> DeclareTurntable(const Dataset& dataset, Turntable*
   std::set<std::string> names;
   for (YamlMap target : top.Maps("targets")) {
     result.scans.push_back(ReadTarget(target, top, dataset));
-    if (!names.insert(result.scans.back().name).second) target.Fail("name", "expected a name that no other target has");
+    const ScanDeclaration& scan = result.scans.back();
+    for (size_t k = 0; k + 1 < result.scans.size(); ++k)
+      if (SamePoints(result.scans[k], scan))
+        target.Fail("scan",
+                    "expected other points than those of target " + result.scans[k].name + ", which has the same");
+    if (!names.insert(scan.name).second) target.Fail("name", "expected a name that no other target has");
   }
   if (result.scans.empty()) top.Fail("targets", "expected at least one target");
   SCANCAL_RETURN_IF_ERROR(top.Finish());

@@ -12,6 +12,7 @@ namespace scancal {
 struct KeepInterval {
   std::string column;
   double lower = 0, upper = 0;  // mm, rad; of an unknown column as in the file
+  bool operator==(const KeepInterval&) const = default;
 };
 
 struct ScanDeclaration {  // one target: one placement of the plate

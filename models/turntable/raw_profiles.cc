@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include "io/message.h"
 #include "io/progress.h"
 
@@ -34,6 +35,7 @@ class Gatherer {
 
   Result<void> Add(double alpha, const double* key, double y, double z, const double* range) {
     RawProfile* profile = key ? ByKey(*key, alpha) : ByAngle(alpha);
+    by_key_ = key != nullptr;
     if (profile->alpha != alpha) {
       return Error{fmt::format("{}: profile {:g}: found angles {:.9g} and {:.9g} rad, expected one angle a profile",
                                path_.string(), *key, profile->alpha, alpha)};
@@ -43,6 +45,8 @@ class Gatherer {
     if (range) profile->range.push_back(*range);
     return {};
   }
+
+  bool by_key() const { return by_key_; }
 
   std::vector<RawProfile> Take() {
     std::stable_sort(profiles_.begin(), profiles_.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
@@ -67,7 +71,18 @@ class Gatherer {
   std::vector<RawProfile> profiles_;
   std::map<double, size_t> index_;
   size_t last_ = 0;
+  bool by_key_ = false;
 };
+
+bool LooksShuffled(const std::vector<RawProfile>& profiles) {
+  double points = 0;
+  std::set<double> angles;
+  for (const RawProfile& profile : profiles) {
+    points += static_cast<double>(profile.y.size());
+    angles.insert(profile.alpha);
+  }
+  return points < 2 * static_cast<double>(profiles.size()) && 3 * angles.size() < profiles.size();
+}
 
 }  // namespace
 
@@ -111,9 +126,13 @@ Result<RawScan> ReadRawScan(const ScanDeclaration& scan, double sense) {
     progress.Show(static_cast<double>(reader.bytes_read()) /
                   static_cast<double>(std::max<int64_t>(1, reader.bytes_total())));
   }
-  RawScan result{scan.name, gatherer.Take(), static_cast<double>(reader.missing()), 0};
+  RawScan result{scan.name, gatherer.Take(), static_cast<double>(reader.missing()), 0, ""};
   if (result.profiles.empty())
     return Error{scan.format.path.string() + ": target " + scan.name + ": no point is left; widen its keep: intervals"};
+  if (!gatherer.by_key() && LooksShuffled(result.profiles))
+    result.warning = "target " + scan.name +
+                     ": most profiles hold one point and their angles recur; if the points are not in the order of the "
+                     "profiles, add a column profile, or u is too small";
   return result;
 }
 

@@ -93,6 +93,7 @@ Result<TurntableStart> TurntableScanner::Initialize() const {
     least = fit.solution.fit.cost;
     start.pose = fit.Pose();
   }
+  SCANCAL_RETURN_IF_ERROR(CheckIncidence(placements_, start.storeys, start.pose));
   return start;
 }
 
@@ -182,7 +183,7 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
   if (plane)
     result.warnings.push_back(
         "point-to-plane residuals are biased by the noise along depth; the depth residual is not");
-  Judge(box, placements_, start, fit, &result);
+  JudgeTurntable(box, placements_, start, fit, &result);
   return result;
 }
 
@@ -190,10 +191,11 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
 // the middle of the search interval.
 Result<std::unique_ptr<Scanner>> LoadTurntable(const Dataset& dataset) {
   Turntable model(Turntable::Residuals::kDepth);
-  SCANCAL_ASSIGN_OR_RETURN(const TurntableDeclaration declaration, DeclareTurntable(dataset, &model));
+  SCANCAL_ASSIGN_OR_RETURN(TurntableDeclaration declaration, DeclareTurntable(dataset, &model));
   std::vector<RawScan> scans;
   for (const ScanDeclaration& scan : declaration.scans) {
     SCANCAL_ASSIGN_OR_RETURN(RawScan raw, ReadCleanScan(scan, declaration.sense));
+    if (!raw.warning.empty()) declaration.warnings.push_back(raw.warning);
     scans.push_back(std::move(raw));
   }
   std::unique_ptr<TurntableScanner> scanner;

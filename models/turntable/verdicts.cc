@@ -12,7 +12,8 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kPerpendicular = 1 * kDegree;  // a plate's normal nearer to the axis tells nothing of M and N
 constexpr double kApart = 5 * kDegree;          // two placements are different
 constexpr double kNarrowSweep = 5 * kDegree;
-constexpr double kEdgeOn = 0.02;  // cosine of the incidence
+constexpr double kFarFromGrid = 5;  // of step and u
+constexpr double kEdgeOn = 0.02;    // cosine of the incidence
 
 // Smallest |n . d| over the profiles of a placement, d the direction along which the sensor measures.
 double LeastIncidence(const Placement& placement, const TurntablePose& pose, const Eigen::Vector3d& normal) {
@@ -63,6 +64,13 @@ void JudgeSearch(const GridBox& box, const TurntableStart& start, Calibration* c
                     start.grid.best.at[0], start.grid.best.at[1]));
   for (const size_t k : {0, 1}) {
     const Parameter* p = calibration->Find(k == 0 ? "M" : "N");
+    const double apart = std::abs(p->value - start.grid.best.at[k]);
+    if (p->role == Role::kEstimate && !start.grid.best.on_edge && apart > kFarFromGrid * (box.step + p->u))
+      calibration->unreliable.push_back(
+          fmt::format("{}: the grid minimum lies {:.3g} mm from the refined value, more than step and u explain: the "
+                      "noise pulls the "
+                      "search away, or the model lacks something",
+                      p->name, apart));
     if (p->role == Role::kEstimate && (p->value < box.lower[k] || p->value > box.upper[k]) && !start.grid.best.on_edge)
       calibration->unreliable.push_back(fmt::format(
           "{} = {:.6g} mm lies outside the search interval; widen search in dataset.yaml, or look at the scans",
@@ -86,6 +94,11 @@ Result<void> CheckOrientations(const Quantities& quantities, const std::vector<P
     return Error{Listed(names) +
                  ": not determined: every plate is perpendicular to the axis, and such a plane looks the same "
                  "for every offset; stand the plate up, 5 to 20 deg from the axis"};
+  return {};
+}
+
+Result<void> CheckIncidence(const std::vector<Placement>& placements, const std::vector<PlaneStorey>& storeys,
+                            const TurntablePose& pose) {
   for (size_t t = 0; t < placements.size(); ++t) {
     const Eigen::Vector3d normal = storeys[t].FitPlane(pose.M, pose.N).first;
     if (LeastIncidence(placements[t], pose, normal) < kEdgeOn)
@@ -107,8 +120,8 @@ Result<void> CheckDetermined(const TurntableFit& fit) {
   return {};
 }
 
-void Judge(const GridBox& box, const std::vector<Placement>& placements, const TurntableStart& start,
-           const TurntableFit& fit, Calibration* calibration) {
+void JudgeTurntable(const GridBox& box, const std::vector<Placement>& placements, const TurntableStart& start,
+                    const TurntableFit& fit, Calibration* calibration) {
   JudgeSearch(box, start, calibration);
   JudgeOrientations(fit, calibration);
   double widest = 0;

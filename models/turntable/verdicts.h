@@ -4,15 +4,19 @@
 
 namespace scancal {
 
-// Before the fit: plates that determine nothing (perpendicular to the axis), or that are seen edge-on.
+// Before the fit: plates that determine nothing because all are perpendicular to the axis.
 Result<void> CheckOrientations(const Quantities& quantities, const std::vector<Placement>& placements,
                                const std::vector<PlaneStorey>& storeys, const TurntablePose& pose);
+
+// At the start of the refinement: plates that are seen edge-on.
+Result<void> CheckIncidence(const std::vector<Placement>& placements, const std::vector<PlaneStorey>& storeys,
+                            const TurntablePose& pose);
 
 // After the fit: quantities without effect of their own.
 Result<void> CheckDetermined(const TurntableFit& fit);
 
 // Doubts about a computed result: minimum on the edge, parallel placements, a narrow sweep.
-void Judge(const GridBox& box, const std::vector<Placement>& placements, const TurntableStart& start,
-           const TurntableFit& fit, Calibration* calibration);
+void JudgeTurntable(const GridBox& box, const std::vector<Placement>& placements, const TurntableStart& start,
+                    const TurntableFit& fit, Calibration* calibration);
 
 }  // namespace scancal

@@ -1,0 +1,12 @@
+// Doubts about a result that need no knowledge of the scanner, in words.
+#pragma once
+#include "solver/calibrate.h"
+#include "solver/uncertainty/jackknife.h"
+
+namespace scancal {
+
+// Adds to warnings what is worth knowing, to unreliable what forbids relying on the result: no convergence, too few
+// views, targets that contradict each other, data that contradict a prior. Lack of fit is a warning only.
+void Judge(const Solution& solution, const Jackknife& jackknife, double clustered_dof, Calibration* calibration);
+
+}  // namespace scancal
