@@ -39,6 +39,16 @@ TEST_F(LayoutsTest, ShuffledLinesWithTheColumnProfile) {
   ExpectSameResult(Refined(data_));
 }
 
+TEST_F(LayoutsTest, ShuffledLinesWithoutTheColumnAreNoticed) {
+  std::mt19937 random(1);
+  std::vector<std::vector<double>> rows;
+  for (const ScanPoint& p : ReadPoints(data_ / "left.csv")) rows.push_back({p.angle, p.y, p.z});
+  std::shuffle(rows.begin(), rows.end(), random);
+  WriteTable(data_ / "left.csv", "angle,y,z", rows);
+  EXPECT_THAT(Refined(data_)["warnings"].dump(), HasSubstr("add a column profile"));
+  EXPECT_EQ(expected_["warnings"].dump().find("add a column profile"), std::string::npos);
+}
+
 TEST_F(LayoutsTest, TwoAnglesInOneProfileAreAnError) {
   std::vector<std::vector<double>> rows;
   for (const ScanPoint& p : ReadPoints(data_ / "left.csv")) rows.push_back({p.angle, p.y, p.z, std::floor(p.angle)});

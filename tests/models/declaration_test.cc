@@ -243,5 +243,13 @@ TEST_F(DeclarationTest, EveryInfluenceOfTheSpecificationIsAccepted) {
   EXPECT_EQ(declaration->warnings.size(), 12U);  // noise_y, encoder_jitter and the scales are modelled
 }
 
+TEST_F(DeclarationTest, TheSamePointsTwice) {
+  EXPECT_THAT(ErrorOfTargets("[{name: a, scan: left.csv}, {name: b, scan: ./left.csv}]"),
+              HasSubstr("other points than those of target a"));
+  EXPECT_EQ(ErrorOfTargets("[{name: a, scan: left.csv, keep: {lines: [1, 9]}}, "
+                           "{name: b, scan: left.csv, keep: {lines: [10, 20]}}]"),
+            "");
+}
+
 }  // namespace
 }  // namespace scancal

@@ -66,6 +66,17 @@ TEST_F(TiltingLidarTest, ItsOffsetsComeOutWhereTheDrawingHasThem) {
   EXPECT_THAT(outcome.out, HasSubstr("URG-04LX lidar on a tilt stand: turntable, lengths in m, angles in deg"));
 }
 
+// The search has no minimum near the result; moving the edge away from it must not hide that.
+TEST_F(TiltingLidarTest, AWiderSearchDoesNotMakeItReliable) {
+  std::string yaml = ReadWhole(data_ / "dataset.yaml");
+  const std::string narrow = "N: [-0.3, 0.3]";
+  ASSERT_NE(yaml.find(narrow), std::string::npos);
+  WriteWhole(data_ / "dataset.yaml", yaml.replace(yaml.find(narrow), narrow.size(), "N: [-0.6, 0.3]"));
+  const Outcome outcome = Refine(data_);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.out, HasSubstr("the grid minimum lies"));
+}
+
 TEST_F(TiltingLidarTest, TheScanIsHashedOnce) {
   Refine(data_);
   const Json result = Result();
