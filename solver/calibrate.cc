@@ -51,7 +51,7 @@ LackOfFit JudgeFit(double sum_of_squares, double dof, const PureError& pure) {
 Eigen::MatrixXd Headline(const Eigen::MatrixXd& clustered, const Budget& budget) {
   Eigen::MatrixXd total = clustered;
   for (const Contribution& line : budget.lines)
-    if (line.sensitivity.size() || line.scope == Scope::kTarget) total += line.covariance;
+    if (!line.prior && (line.scope == Scope::kSystem || line.scope == Scope::kTarget)) total += line.covariance;
   return total;
 }
 

@@ -167,7 +167,9 @@ Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& o
   }
   fit.cost = linear.cost;
   if (!fit.converged && fit.message.empty())
-    fit.message = "no convergence after " + std::to_string(fit.iterations) + " iterations (" + summary.message + ")";
+    fit.message = summary.termination_type == ceres::CONVERGENCE
+                      ? "the last step is still larger than a thousandth of the uncertainty"
+                      : "no convergence after " + std::to_string(fit.iterations) + " iterations";
   return fit;
 }
 

@@ -1,6 +1,7 @@
 #include "solver/uncertainty/propagate.h"
 #include <Eigen/QR>
 #include <map>
+#include <set>
 #include "solver/uncertainty/covariance.h"
 
 namespace scancal {
@@ -16,11 +17,15 @@ class Meat {
     it->second.second += scores * scores.transpose();
     if (fresh) order_.push_back(source);
   }
+  void AddPrior(const std::string& name, Scope scope, const Eigen::MatrixXd& scores) {
+    Add(name, scope, scores);
+    priors_.insert(name);
+  }
   Budget Between(const Eigen::MatrixXd& h_inverse) const {
     Budget budget;
     for (const std::string& source : order_) {
       const auto& [scope, meat] = lines_.at(source);
-      budget.lines.push_back({source, scope, h_inverse * meat * h_inverse, {}});
+      budget.lines.push_back({source, scope, priors_.contains(source), h_inverse * meat * h_inverse, {}});
     }
     return budget;
   }
@@ -29,6 +34,7 @@ class Meat {
   Eigen::Index system_;
   std::map<std::string, std::pair<Scope, Eigen::MatrixXd>> lines_;
   std::vector<std::string> order_;
+  std::set<std::string> priors_;
 };
 
 // Scores of one view's instances of one quantity: weighted = J~_v' mix (system x rows), b = dr/dq (rows).
@@ -65,7 +71,7 @@ Budget Propagate(const Problem& problem, const Estimate& fit, const Linearizatio
       const Block& view = problem.targets[t].views[v];
       const Eigen::MatrixXd left = target.system_left.middleRows(target.first[v], view.size()).transpose();
       if (!view.prior.empty()) {
-        meat.Add(view.prior, Scope::kTarget, left);
+        meat.AddPrior(view.prior, Scope::kTarget, left);
         continue;
       }
       const Eigen::MatrixXd weighted = view.Weighted(left);
@@ -89,8 +95,8 @@ Budget Propagate(const Problem& problem, const Estimate& fit, const Linearizatio
   for (Eigen::Index k = 0; k < n; ++k)
     if (influence(k).scope == Scope::kSystem) meat.Add(influence(k).Source(), Scope::kSystem, of_system.col(k));
   for (size_t p = 0; p < problem.priors.size(); ++p)
-    meat.Add(problem.priors[p].prior, Scope::kSystem,
-             linear.targets.back().system_left.row(static_cast<Eigen::Index>(p)).transpose());
+    meat.AddPrior(problem.priors[p].prior, Scope::kSystem,
+                  linear.targets.back().system_left.row(static_cast<Eigen::Index>(p)).transpose());
   const Eigen::MatrixXd h_inverse = InverseInformation(linear);
   Budget budget = meat.Between(h_inverse);
   for (Eigen::Index k = 0; k < n; ++k)

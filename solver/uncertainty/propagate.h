@@ -10,6 +10,7 @@ namespace scancal {
 struct Contribution {
   std::string source;
   Scope scope = Scope::kSystem;  // the widest of its quantities
+  bool prior = false;            // of an estimated quantity
   Eigen::MatrixXd covariance;    // system x system
   Eigen::VectorXd
       sensitivity;  // d parameter / d quantity, for a source with one value for the whole system; else empty

@@ -117,6 +117,18 @@ TEST(Summarize, AddsWhatWasConsideredToTheClusteredFigure) {
   EXPECT_GT(slope.dof, 24 - 4);  // what was declared is taken as known exactly
 }
 
+TEST(Summarize, CountsAPriorOfATargetOnce) {  // it is a cluster of the clustered figure already
+  LineModel model;
+  model.quantity(LineModel::kLevel).u = 0.05;
+  LineScene scene;
+  scene.targets = 1;
+  Problem problem = MakeProblem<LineModel>(std::make_shared<LineModel>(model), scene.Make());
+  problem.WeighEqually(scene.noise);
+  const Estimate start = NominalStart(problem);
+  const Calibration result = Summarize(Solve(std::move(problem), start), scene.noise, {});
+  EXPECT_NEAR(result.Find("slope")->u, result.Find("slope")->u_clustered, 1e-15);
+}
+
 TEST(CoverageFactor, IsStudentsT) {  // GUM table G.2
   EXPECT_NEAR(CoverageFactor(0.95, 1), 12.71, 0.005);
   EXPECT_NEAR(CoverageFactor(0.95, 4), 2.78, 0.005);
