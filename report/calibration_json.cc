@@ -9,6 +9,8 @@ constexpr int kFormatVersion = 1;
 // JSON has no infinity: what is not known is null.
 Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json Whole(double count) { return static_cast<int64_t>(count); }
+
 Json ParameterJson(const Parameter& p) {
   Json json = {
       {"name", p.name}, {"unit", Name(p.unit)}, {"role", Name(p.role)}, {"value", Number(p.value)}, {"u", Number(p.u)}};
@@ -24,12 +26,16 @@ Json ParameterJson(const Parameter& p) {
 
 Json TargetJson(const TargetSummary& target) {
   double set_aside = 0;
-  for (const auto& [reason, count] : target.set_aside) set_aside += count;
+  Json reasons = Json::object();
+  for (const auto& [reason, count] : target.set_aside) {
+    set_aside += count;
+    reasons[reason] = Whole(count);
+  }
   Json json = {{"name", target.name},
-               {"points", target.points},
-               {"missing", target.missing},
-               {"set_aside", set_aside},
-               {"set_aside_reasons", target.set_aside}};
+               {"points", Whole(target.points)},
+               {"missing", Whole(target.missing)},
+               {"set_aside", Whole(set_aside)},
+               {"set_aside_reasons", reasons}};
   for (const auto& [name, values] : target.geometry) json[name] = values.size() == 1 ? Json(values[0]) : Json(values);
   json["rms"] = Number(target.rms);
   return json;
@@ -79,7 +85,7 @@ Json ToJson(const Calibration& c) {
     json["covariance"].push_back(row);
   }
   json["covariance_of"] = c.estimated;
-  json["grid"] = {{"step", c.grid.step}, {"S", Number(c.grid.S)}, {"nodes", c.grid.nodes}};
+  json["grid"] = {{"step", c.grid.step}, {"S", Number(c.grid.S)}, {"nodes", Whole(c.grid.nodes)}};
   for (size_t k = 0; k < c.grid.at.size(); ++k) json["grid"][c.grid.names[k]] = c.grid.at[k];
   json["targets"] = Json::array();
   for (const TargetSummary& target : c.targets) json["targets"].push_back(TargetJson(target));
