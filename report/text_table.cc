@@ -52,7 +52,7 @@ std::string Significant(double value, int digits) {
   if (!std::isfinite(value)) return NotANumber(value);
   if (value == 0) return Fixed(0, digits - 1);
   // The exponent after rounding: 0.0999 to two digits is 0.10.
-  const std::string scientific = fmt::format("{:.{}e}", value, digits - 1);
+  std::string scientific = fmt::format("{:.{}e}", value, digits - 1);
   const int exponent = std::stoi(scientific.substr(scientific.find('e') + 1));
   if (std::abs(value) < 1e-4 || std::abs(value) >= 1e6) return scientific;
   return Fixed(value, std::max(0, digits - 1 - exponent));
