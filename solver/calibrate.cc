@@ -32,7 +32,7 @@ double DataCount(const Target& target) {
 }
 
 // Everything between views against everything within them (Draper and Smith, Applied Regression Analysis, 2.1).
-LackOfFit JudgeFit(double sum_of_squares, double dof, const PureError& pure) {
+LackOfFit TestFit(double sum_of_squares, double dof, const PureError& pure) {
   LackOfFit result;
   result.pure_error_sigma = pure.sigma();
   result.dof1 = dof - pure.dof;
@@ -135,7 +135,7 @@ Calibration Summarize(const Solution& solution, double sigma, const PureError& p
   const double quantities = static_cast<double>(
       estimated.size() + problem.With({Scope::kTarget}, Role::kEstimate).size() * problem.targets.size());
   result.sigma = std::sqrt(sum_of_squares / std::max(1.0, count - quantities));
-  result.lack_of_fit = JudgeFit(sum_of_squares, count - quantities, pure_error);
+  result.lack_of_fit = TestFit(sum_of_squares, count - quantities, pure_error);
   AddBudget(solution, clustered, budget, &result);
   for (Eigen::Index t = 0; t < jackknife.estimates.rows(); ++t)
     result.jackknife.push_back(Plain(jackknife.estimates.row(t).transpose()));

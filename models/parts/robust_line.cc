@@ -3,14 +3,14 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include "models/parts/median.h"
 
 namespace scancal {
 namespace {
 
 constexpr size_t kSubsample = 48;
 constexpr size_t kFewestPoints = 5;
-constexpr double kMadToSigma = 1.4826;  // of a normal distribution
-constexpr double kWithin = 6;           // scales
+constexpr double kWithin = 6;  // scales
 
 struct Points {
   std::vector<double> y, z;

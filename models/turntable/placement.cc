@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include "models/parts/median.h"
 #include "models/parts/robust_line.h"
 #include "models/turntable/raw_profiles.h"
 #include "models/turntable/robust_plane.h"
@@ -17,15 +18,7 @@ constexpr size_t kFewestForRobust = 5;
 constexpr double kRounding = 1e-7;              // of a profile's extent: what is nearer to its line is on it
 constexpr double kImplausibleLength_mm = 50e3;  // no plate is seen from farther away
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kMadToSigma = 1.4826;  // of a normal distribution
 const char kReasonOffLine[] = "off the line of their profile", kReasonOffPlane[] = "off the plane of their target";
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double Extent(const RawProfile& profile) {
   const auto [y0, y1] = std::minmax_element(profile.y.begin(), profile.y.end());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include "models/parts/median.h"
 
 namespace scancal {
 namespace {
@@ -31,12 +32,6 @@ RobustPlane FitPlane(const std::vector<Points>& profiles, const std::vector<size
     for (const Eigen::Vector3d& p : profiles[k]) scatter += (p - plane.through) * (p - plane.through).transpose();
   plane.normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
   return plane;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 std::vector<double> Distances(const RobustPlane& plane, const std::vector<Points>& profiles) {
