@@ -13,6 +13,8 @@ DEFINE_string(out, "", "folder or file to write");
 DEFINE_string(residual, "depth",
               "depth (measured depth minus the depth that the model predicts) or plane (plain "
               "point-to-plane, biased)");
+DEFINE_string(weights, "estimated",
+              "estimated (generalised least squares with the variances that the residuals show) or equal");
 DEFINE_int32(max_iterations, 100, "most iterations of the refinement");
 
 namespace scancal {
@@ -20,7 +22,7 @@ namespace {
 
 Result<Calibration> Refined(const std::vector<std::string>& arguments) {
   SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, LoadAndEcho(arguments));
-  SCANCAL_ASSIGN_OR_RETURN(Calibration calibration, scanner->Calibrate({FLAGS_residual, FLAGS_max_iterations}));
+  SCANCAL_ASSIGN_OR_RETURN(Calibration calibration, scanner->Calibrate({FLAGS_residual, FLAGS_weights == "equal", FLAGS_max_iterations}));
   for (const std::filesystem::path& file : scanner->Files()) {
     SCANCAL_ASSIGN_OR_RETURN(const std::string sha256, Sha256(file));
     calibration.inputs.push_back({file.filename().string(), sha256});
@@ -33,6 +35,8 @@ Result<Calibration> Refined(const std::vector<std::string>& arguments) {
 
 int Run(const std::vector<std::string>& arguments) {
   if (FLAGS_max_iterations < 1) return Complain("--max_iterations: expected 1 or more");
+  if (FLAGS_weights != "estimated" && FLAGS_weights != "equal")
+    return Complain("--weights: found \"" + FLAGS_weights + "\", expected estimated or equal");
   const Result<Calibration> calibration = Refined(arguments);
   if (!calibration.ok()) return Complain(calibration.error().message);
   std::printf("%s", ToText(*calibration).c_str());
@@ -45,7 +49,7 @@ const Command kRefineCommand = {
     "refine",
     "DATASET",
     "calibrate: search, joint refinement, uncertainty; writes calibration.json",
-    {{"out", "folder for calibration.json (default: the current one)"}, {"residual"}, {"max_iterations"}},
+    {{"out", "folder for calibration.json (default: the current one)"}, {"residual"}, {"weights"}, {"max_iterations"}},
     &Run};
 
 }  // namespace scancal

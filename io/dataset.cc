@@ -88,20 +88,30 @@ std::vector<ParameterSetting> ReadParameters(YamlMap yaml) {
   return settings;
 }
 
-std::vector<InfluenceSetting> ReadInfluences(YamlMap yaml) {
+InfluenceSetting ReadInfluence(YamlMap& influences, const std::string& name) {
   constexpr auto kExpected = "expected a standard uncertainty of 0 or more, or estimate";
-  std::vector<InfluenceSetting> settings;
-  for (const std::string& name : yaml.Keys()) {
-    InfluenceSetting setting{.name = name};
-    if (yaml.IsNumber(name)) {
-      setting.u = yaml.Number(name);
-      if (setting.u < 0) yaml.Fail(name, kExpected);
-    } else {
-      setting.estimate = !yaml.IsMap(name) && yaml.Text(name) == "estimate";
-      if (!setting.estimate) yaml.Fail(name, kExpected);
-    }
-    settings.push_back(std::move(setting));
+  InfluenceSetting setting{.name = name, .role = "consider"};
+  if (influences.IsMap(name)) {
+    const ParameterSetting role = ReadRoleWithValue(influences.Map(name), name);
+    if (role.value.value_or(0) != 0) influences.Fail(name, "an influence is zero but for its uncertainty");
+    setting.role = role.role;
+    setting.u = role.u;
+  } else if (influences.IsNumber(name)) {
+    setting.u = influences.Number(name);
+    if (setting.u < 0) influences.Fail(name, kExpected);
+  } else {
+    setting.role = influences.Text(name);
+    if (setting.role == "true") setting.role = "yes";
+    if (setting.role == "false") setting.role = "no";
+    if (setting.role != "estimate" && setting.role != "hold" && setting.role != "yes" && setting.role != "no")
+      influences.Fail(name, kExpected);
   }
+  return setting;
+}
+
+std::vector<InfluenceSetting> ReadInfluences(YamlMap yaml) {
+  std::vector<InfluenceSetting> settings;
+  for (const std::string& name : yaml.Keys()) settings.push_back(ReadInfluence(yaml, name));
   return settings;
 }
 

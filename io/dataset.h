@@ -18,11 +18,11 @@ struct ParameterSetting {
   double u = 0;  // declared unit; consider: standard uncertainty, required > 0; estimate: of the prior, 0 = none
 };
 
-// influences: {noise_y: 0.05, encoder_jitter: estimate}
+// influences: {noise_y: 0.05, encoder_jitter: estimate, form: {estimate: 0, u: 0.01}, one_plate: yes}
 struct InfluenceSetting {
   std::string name;
-  bool estimate = false;
-  double u = 0;  // declared unit, >= 0
+  std::string role;  // consider (a number) | estimate | hold | yes | no
+  double u = 0;      // declared unit, >= 0; estimate: of the prior, 0 = none
 };
 
 struct Dataset {

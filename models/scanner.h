@@ -15,6 +15,7 @@ namespace scancal {
 
 struct RefineChoice {
   std::string residual;  // a model's name for one of its residuals; empty: the headline
+  bool equal_weights = false;  // in place of weights from the estimated variances
   int max_iterations = 100;
 };
 

@@ -8,8 +8,8 @@ namespace scancal {
 
 Turntable::Turntable(Residuals residuals) : residuals_(residuals) {
   using enum Scope;
-  const auto declare = [&](const char* name, Unit unit, Scope scope, Role role, bool in_nodes) {
-    quantities_.push_back({name, unit, scope, role, 0, 0, in_nodes, ""});
+  const auto declare = [&](const char* name, Unit unit, Scope scope, Role role, bool in_nodes, const char* source = "") {
+    quantities_.push_back({name, unit, scope, role, 0, 0, in_nodes, source});
   };
   declare("M", Unit::kMm, kSystem, Role::kEstimate, true);
   declare("N", Unit::kMm, kSystem, Role::kEstimate, true);
@@ -17,11 +17,22 @@ Turntable::Turntable(Residuals residuals) : residuals_(residuals) {
   declare("tilt_y", Unit::kRad, kSystem, Role::kHold, true);
   declare("scale_y", Unit::kOne, kSystem, Role::kHold, true);
   declare("scale_z", Unit::kOne, kSystem, Role::kHold, true);
+  declare("shear", Unit::kRad, kSystem, Role::kHold, true);
+  declare("linearity", Unit::kMm, kSystem, Role::kHold, false);
+  for (const char* name : {"encoder_cos1", "encoder_sin1", "encoder_cos2", "encoder_sin2"})
+    declare(name, Unit::kRad, kSystem, Role::kHold, false);
+  declare("expansion", Unit::kOne, kSystem, Role::kHold, true);
   declare("normal_1", Unit::kRad, kTarget, Role::kEstimate, true);
   declare("normal_2", Unit::kRad, kTarget, Role::kEstimate, true);
   declare("distance", Unit::kMm, kTarget, Role::kEstimate, true);
-  declare("encoder_jitter", Unit::kRad, kView, Role::kHold, false);
-  declare("noise_y", Unit::kMm, kPoint, Role::kHold, false);
+  // Of these `estimate` means their variance.
+  declare("encoder_jitter", Unit::kRad, kView, Role::kEstimate, false);
+  declare("line_offset", Unit::kMm, kView, Role::kEstimate, false, "line_correlation (offset)");
+  declare("line_slope", Unit::kRad, kView, Role::kEstimate, false, "line_correlation (slope)");
+  declare("noise_y", Unit::kMm, kPoint, Role::kEstimate, false);
+  declare("noise_z", Unit::kMm, kPoint, Role::kHold, false);
+  for (int k = 0; k < kFormModes; ++k)
+    declare(("form_" + std::to_string(k + 1)).c_str(), Unit::kMm, kTarget, Role::kHold, false, "form");
 }
 
 std::vector<Turntable::View> Turntable::Nodes(const Target& target) const {

@@ -47,6 +47,21 @@ Json ByParameter(const std::vector<std::string>& names, const std::vector<double
   return json;
 }
 
+Json MisfitsJson(const Calibration& calibration) {
+  Json list = Json::array();
+  for (const MisfitTest& misfit : calibration.misfits)
+    list.push_back({{"source", misfit.source},
+                    {"considered", misfit.considered},
+                    {"size", Number(misfit.size)},
+                    {"unit", Name(misfit.unit)},
+                    {"F", Number(misfit.F)},
+                    {"dof1", Number(misfit.dof1)},
+                    {"dof2", Number(misfit.dof2)},
+                    {"p", Number(misfit.p)},
+                    {"moves", ByParameter(calibration.estimated, misfit.moves)}});
+  return list;
+}
+
 Json BudgetJson(const Calibration& calibration) {
   Json lines = Json::array();
   for (const BudgetLine& line : calibration.budget)
@@ -85,6 +100,7 @@ Json ToJson(const Calibration& c) {
     json["covariance"].push_back(row);
   }
   json["covariance_of"] = c.estimated;
+  json["joint"] = {{"k", Number(c.joint.k)}, {"dof", Number(c.joint.dof)}};
   json["grid"] = {{"step", c.grid.step}, {"S", Number(c.grid.S)}, {"nodes", Whole(c.grid.nodes)}};
   for (size_t k = 0; k < c.grid.at.size(); ++k) json["grid"][c.grid.names[k]] = c.grid.at[k];
   json["targets"] = Json::array();
@@ -97,6 +113,7 @@ Json ToJson(const Calibration& c) {
         {"F", c.lack_of_fit.F}, {"dof1", c.lack_of_fit.dof1}, {"dof2", c.lack_of_fit.dof2}, {"p", c.lack_of_fit.p}};
   json["condition"] = Number(c.condition);
   json["weakest"] = c.weakest;
+  json["misfits"] = MisfitsJson(c);
   json["budget"] = BudgetJson(c);
   json["compare"] = Json::array();
   json["surface"] = Json::object();

@@ -1,4 +1,6 @@
 #include "report/text.h"
+#include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include "report/text_table.h"
 
@@ -6,6 +8,8 @@ namespace scancal {
 namespace {
 
 std::string Shown(double number) { return number > 0 ? Significant(number, 2) : "-"; }
+
+std::string Percent(double share) { return share < 0.0005 ? "0.0" : fmt::format("{:.1f}", 100 * share); }
 
 std::string Parameters(const Calibration& c) {
   TextTable table({"", "value", "unit", "u", "U (95 %)", "k", "dof", "u naive", "u clustered", "u jackknife"});
@@ -36,26 +40,42 @@ std::string Targets(const Calibration& c) {
   return table.Text() + reasons;
 }
 
-// Where u comes from, if anything but the residuals was declared.
+// Where u comes from: the budget, and its sum.
 std::string BudgetText(const Calibration& c) {
-  std::vector<std::string> header = {"u comes from", "type", "u", "unit"};
-  for (const std::string& name : c.estimated) header.push_back("u(" + name + ")");
+  std::vector<std::string> header = {"u comes from", "type", "value", "unit", "dof"};
+  for (const std::string& name : c.estimated) {
+    header.push_back("u(" + name + ")");
+    header.push_back("share/%");
+  }
   TextTable table(header);
   for (const BudgetLine& line : c.budget) {
-    std::vector<std::string> row = {line.source, std::string(1, line.type), Significant(line.u, 2), Name(line.unit)};
-    for (const double u : line.contribution) row.push_back(Significant(u, 2));
+    std::vector<std::string> row = {line.source, std::string(1, line.type), Significant(line.u, 2), Name(line.unit),
+                                    Count(std::floor(line.dof))};
+    for (size_t k = 0; k < line.contribution.size(); ++k) {
+      row.push_back(Significant(line.contribution[k], 2));
+      row.push_back(Percent(line.share[k]));
+    }
     table.Add(row);
   }
+  std::vector<std::string> sum = {"combined", "", "", "", ""};
+  for (const std::string& name : c.estimated) {
+    sum.push_back(Significant(c.Find(name)->u, 2));
+    sum.push_back("100");
+  }
+  table.Add(sum);
   return table.Text();
 }
 
-bool HasDeclared(const Calibration& c) { return c.budget.size() > 1; }
+bool HasDeclared(const Calibration& c) {
+  return std::any_of(c.budget.begin(), c.budget.end(), [](const BudgetLine& line) { return line.type == 'B'; });
+}
 
 }  // namespace
 
 std::string ToText(const Calibration& c) {
   std::string text = Parameters(c);
-  text += HasDeclared(c) ? "\n" + BudgetText(c) : "u: repeatability and fit only, not a traceable uncertainty\n";
+  if (!c.estimated.empty()) text += "\n" + BudgetText(c);
+  if (!HasDeclared(c)) text += "repeatability and fit only: not a traceable uncertainty\n";
   text += "\n" + Targets(c) + "\n";
   text += "grid search: ";
   for (size_t k = 0; k < c.grid.at.size(); ++k)
@@ -74,6 +94,9 @@ std::string ToText(const Calibration& c) {
     for (const auto& [name, component] : c.weakest) text += " " + name + " " + Significant(component, 2);
     text += "\n";
   }
+  if (c.joint.k > 0)
+    text += "k of " + std::to_string(c.estimated.size()) +
+            " quantities jointly (95 % region): " + Significant(c.joint.k, 3) + "; of one: see the table\n";
   text += "\n";
   for (const std::string& warning : c.warnings) text += "warning: " + warning + "\n";
   for (const std::string& reason : c.unreliable) text += "unreliable: " + reason + "\n";

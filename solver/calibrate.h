@@ -1,8 +1,11 @@
-// From a problem and a start to a Calibration: refinement, covariances side by side, what is determined.
+// From a problem and a start to a Calibration: refinement, weights, covariances side by side, what is determined.
 #pragma once
+#include <optional>
 #include "solver/calibration.h"
 #include "solver/observability.h"
 #include "solver/refine.h"
+#include "solver/uncertainty/covariance.h"
+#include "solver/uncertainty/variances.h"
 
 namespace scancal {
 
@@ -17,14 +20,20 @@ struct Solution {
   Fit fit;
   Linearization linear;  // of the views, at the fit
   Observability observability;
+  Covariance naive;                    // of the fit with equal weights
+  std::optional<Variances> variances;  // those that weigh the problem; none: equal weights
 };
 
 // Refines and looks at what the data determine. Does not judge.
 Solution Solve(Problem problem, const Estimate& start, const RefineOptions& options = {});
 
-// Numbers of a solution: parameters with all their uncertainties, covariance, budget of what was considered, lack of
-// fit, jackknife. sigma: the standard deviation by which the rows were divided, mm. The model adds what only it can
-// say.
-Calibration Summarize(const Solution& solution, double sigma, const PureError& pure_error);
+// The same by generalised least squares: the variances of all random influences from the residuals, or as declared, and
+// every view weighted with its own covariance. least: see EstimateVariances.
+Solution SolveWeighted(const Solution& plain, double least, const RefineOptions& options = {});
+
+// Numbers of a solution: parameters with all their uncertainties, covariance, budget, lack of fit, jackknife. u is
+// K V K' of everything that was estimated or declared where the fit is weighted; else clustered by view, and what all
+// views share. The model adds what only it can say.
+Calibration Summarize(const Solution& solution, const PureError& pure_error);
 
 }  // namespace scancal

@@ -13,7 +13,7 @@ struct Parameter {
   Unit unit = Unit::kMm;
   Role role = Role::kHold;
   double value = 0;
-  // Standard uncertainties; 0 for what is held. u is the headline: clustered by view, and what was considered.
+  // Standard uncertainties; 0 for what is held. u is the headline (solver/uncertainty/headline.h).
   double u = 0, u_naive = 0, u_clustered = 0, u_jackknife = 0;
   double dof = 0, k = 0, U = 0;  // U = k u: 95 % coverage
 };
@@ -46,9 +46,22 @@ struct BudgetLine {
   double dof = 0;                    // infinite for what was declared
 };
 
-struct LackOfFit {              // of everything within views against everything between them; a warning, no verdict
-  double pure_error_sigma = 0;  // mm
+struct LackOfFit {  // of everything within views against everything between them: noise that is not white shows, too
+  double pure_error_sigma = 0;              // mm
   double F = 0, dof1 = 0, dof2 = 0, p = 1;  // dof1 = 0: not computed
+};
+
+struct MisfitTest {  // see solver/uncertainty/misfit.h
+  std::string source;
+  bool considered = false;  // with a u; else held
+  Unit unit = Unit::kOne;
+  double size = 0;
+  double F = 0, dof1 = 0, dof2 = 0, p = 1;
+  std::vector<double> moves;  // per estimated parameter
+};
+
+struct JointRegion {  // all estimated parameters together, coverage 95 %
+  double k = 0, dof = 0;
 };
 
 struct InputFile {
@@ -62,10 +75,12 @@ struct Calibration {
   std::vector<Parameter> parameters;    // every system quantity of role estimate or consider, and the model's main ones
   std::vector<std::string> estimated;   // the order of the covariance
   Eigen::MatrixXd covariance;           // of the headline
+  JointRegion joint;
   GridMinimum grid;
   std::vector<TargetSummary> targets;
   double sigma = 0;  // rms residual by degrees of freedom, mm
   LackOfFit lack_of_fit;
+  std::vector<MisfitTest> misfits;  // of a weighted fit
   double condition = 0;
   std::map<std::string, double> weakest;  // components of the least determined direction
   std::vector<BudgetLine> budget;

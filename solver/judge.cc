@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kSuspicious = 1e-3;     // a warning that a right data set raises once in a thousand
 constexpr double kContradiction = 1e-6;  // no chance any more
+constexpr double kNearly = 0.8;          // of the strongest
 constexpr double kFarFromPrior = 3;      // of the prior's u
 
 std::string LeastDetermined(const std::map<std::string, double>& direction) {
@@ -37,6 +38,49 @@ void JudgeJackknife(const Solution& solution, const Jackknife& jackknife, double
   }
 }
 
+std::string Shown(double p) { return p < 1e-16 ? "p < 1e-16" : fmt::format("p = {:.1g}", p); }
+
+// Several sources may look alike: the first, in the model's order, that explains nearly as much as the strongest.
+void JudgeMisfits(Calibration* result) {
+  std::vector<const MisfitTest*> significant;
+  double largest = 0;
+  for (const MisfitTest& misfit : result->misfits) {
+    if (misfit.p >= kSuspicious) continue;
+    significant.push_back(&misfit);
+    largest = std::max(largest, misfit.F);
+  }
+  if (significant.empty()) return;
+  const MisfitTest* strongest = *std::find_if(significant.begin(), significant.end(),
+                                              [&](const MisfitTest* each) { return each->F >= kNearly * largest; });
+  std::string others;
+  for (const MisfitTest* each : significant)
+    if (each != strongest) others += (others.empty() ? "" : ", ") + each->source;
+  double furthest = 0;
+  std::string which;
+  for (size_t k = 0; k < result->estimated.size(); ++k) {
+    const double in_u = std::abs(strongest->moves[k]) / result->Find(result->estimated[k])->u;
+    if (in_u <= furthest) continue;
+    furthest = in_u;
+    which = result->estimated[k];
+  }
+  (furthest > 1 ? result->unreliable : result->warnings)
+      .push_back(fmt::format(
+          "lack of fit: {} is {}, but the residuals ask for {:.2g}{}{} (F = {:.3g}, {}), which would move {} by "
+          "{:.2g} u{}; estimate it, or declare how uncertain it is, if it is what it looks like",
+          strongest->source, strongest->considered ? "considered with a smaller u" : "held", strongest->size,
+          strongest->unit == Unit::kOne ? "" : " " + std::string(Name(strongest->unit)),
+          strongest->dof1 > 1 ? " rms" : "", strongest->F, Shown(strongest->p), which, furthest,
+          others.empty() ? "" : " (also seen as " + others + ")"));
+}
+
+void JudgeVariances(const Variances& variances, Calibration* result) {
+  for (const Exceeded& exceeded : variances.exceeded)
+    result->warnings.push_back(
+        fmt::format("{}: declared with u = {:.3g}, but the residuals show {:.3g} (mm, rad); the larger one is used",
+                    exceeded.source, exceeded.declared, exceeded.estimated));
+  if (!variances.converged) result->warnings.push_back("the variances did not settle; compare u with u clustered");
+}
+
 void JudgeFit(const LackOfFit& fit, Calibration* result) {
   if (fit.dof1 == 0 || fit.p >= kSuspicious) return;
   result->warnings.push_back(fmt::format(
@@ -63,7 +107,12 @@ void JudgePriors(const Problem& problem, Calibration* result) {
 
 void Judge(const Solution& solution, const Jackknife& jackknife, double clustered_dof, Calibration* calibration) {
   JudgeJackknife(solution, jackknife, clustered_dof, calibration);
-  JudgeFit(calibration->lack_of_fit, calibration);
+  if (solution.variances) {
+    JudgeMisfits(calibration);
+    JudgeVariances(*solution.variances, calibration);
+  } else {
+    JudgeFit(calibration->lack_of_fit, calibration);
+  }
   JudgePriors(solution.problem, calibration);
   if (!calibration->estimated.empty() && clustered_dof < 1)
     calibration->unreliable.push_back(

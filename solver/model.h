@@ -3,6 +3,7 @@
 #include <ceres/jet.h>
 #include <algorithm>
 #include <concepts>
+#include <type_traits>
 #include "solver/problem.h"
 
 namespace scancal {
@@ -16,6 +17,13 @@ struct Seen {
   const T& operator[](int k) const { return q[k]; }
   T operator()(int i, int k) const { return point ? q[k] + point[i * count + k] : q[k]; }  // as point i sees it
 };
+
+// Neither a value nor a derivative: what multiplies it need not be computed.
+template <class T>
+bool IsZero(const T& x) {
+  if constexpr (std::is_same_v<T, double>) return x == 0;
+  else return x.a == 0 && x.v.isZero(0);
+}
 
 // A model declares one list of quantities and one residual. Residuals are signed, smooth, pure, and written in the
 // frame where the noise lives.

@@ -26,17 +26,6 @@ class PriorRow final : public Rows {
 
 double InverseDeviation(double sigma) { return Whitening(Eigen::MatrixXd::Constant(1, 1, sigma * sigma))(0, 0); }
 
-void MixNodes(Target* target) {
-  if (!target->nodes.rows) return;
-  TriangularFactor factor(target->nodes.rows->size());
-  for (size_t v = 0; v < target->interpolation.size(); ++v) {
-    const Block& view = target->views[v];
-    factor.Add(view.weight *
-               (view.mix.size() ? Eigen::MatrixXd(view.mix * target->interpolation[v]) : target->interpolation[v]));
-  }
-  target->nodes.mix = factor.R();
-}
-
 }  // namespace
 
 const char* Name(Unit unit) { return unit == Unit::kMm ? "mm" : unit == Unit::kRad ? "rad" : "1"; }
@@ -65,8 +54,19 @@ void Block::Evaluate(const double* q, std::span<const int> seeds, Eigen::VectorX
   if (offset.size()) *r += offset;
 }
 
-Eigen::MatrixXd Block::Weighted(const Eigen::Ref<const Eigen::MatrixXd>& left) const {
+Eigen::MatrixXd Block::Weighted(const Eigen::Ref<const Eigen::MatrixXd>& rows_of_r) const {
+  return mix.size() ? Eigen::MatrixXd(weight * mix * rows_of_r) : Eigen::MatrixXd(weight * rows_of_r);
+}
+
+Eigen::MatrixXd Block::WeightedFromLeft(const Eigen::Ref<const Eigen::MatrixXd>& left) const {
   return mix.size() ? Eigen::MatrixXd(weight * left * mix) : Eigen::MatrixXd(weight * left);
+}
+
+void Target::MixNodes() {
+  if (!nodes.rows) return;
+  TriangularFactor factor(nodes.rows->size());
+  for (size_t v = 0; v < interpolation.size(); ++v) factor.Add(views[v].Weighted(interpolation[v]));
+  nodes.mix = factor.R();
 }
 
 void Problem::AddPriors() {
@@ -89,7 +89,7 @@ void Problem::WeighEqually(double sigma) {
       view.weight = InverseDeviation(sigma);
       view.mix.resize(0, 0);
     }
-    MixNodes(&target);
+    target.MixNodes();
   }
 }
 

@@ -62,8 +62,8 @@ struct Block {
   std::string prior;  // not empty: a prior of that name, with unit noise of its own
   int size() const { return static_cast<int>(mix.size() ? mix.rows() : rows->size()); }
   void Evaluate(const double* q, std::span<const int> seeds, Eigen::VectorXd* r, Eigen::MatrixXd* jacobian) const;
-  // weight * left * mix, rows x size() into rows x rows->size(): from the residual back to r(q).
-  Eigen::MatrixXd Weighted(const Eigen::Ref<const Eigen::MatrixXd>& left) const;
+  Eigen::MatrixXd Weighted(const Eigen::Ref<const Eigen::MatrixXd>& rows_of_r) const;     // weight * mix * rows_of_r
+  Eigen::MatrixXd WeightedFromLeft(const Eigen::Ref<const Eigen::MatrixXd>& left) const;  // weight * left * mix
 };
 
 // The views of one target share its quantities. Where residuals are linear in a few known features, all views also
@@ -74,6 +74,7 @@ struct Target {
   std::vector<Block> views;                    // profile storey; the priors of the target's own quantities come last
   Block nodes;                                 // node storey; rows == nullptr if the model has none
   std::vector<Eigen::MatrixXd> interpolation;  // per view that is no prior
+  void MixNodes();                             // after the views' weights or mixes have changed
 };
 
 // Owns all it refers to.

@@ -90,10 +90,18 @@ ComparisonRow GridRow(const TurntableScanner& scanner, const TurntableStart& sta
   return row;
 }
 
+TurntablePose Left(const TurntableScanner& scanner, const TurntableStart& start, Turntable::Residuals residuals,
+                   bool weighted, const std::vector<int>& estimate, size_t out) {
+  const TurntableFit fit = scanner.Fit(start.pose, residuals, estimate, out);
+  return weighted ? scanner.FitWeighted(fit).Pose() : fit.Pose();
+}
+
 ComparisonRow JointRow(const TurntableScanner& scanner, const TurntableStart& start, const std::string& name,
-                       Turntable::Residuals residuals, const std::vector<int>& estimate) {
+                       Turntable::Residuals residuals, bool weighted, const std::vector<int>& estimate) {
   const Stopwatch watch;
-  const TurntableFit fit = scanner.Fit(start.pose, residuals, estimate);
+  TurntableFit fit = scanner.Fit(start.pose, residuals, estimate);
+  const bool determined = fit.solution.observability.undetermined.empty();
+  if (weighted && determined) fit = scanner.FitWeighted(fit);
   ComparisonRow row;
   row.method = name;
   row.seconds = watch.Seconds();
@@ -101,10 +109,10 @@ ComparisonRow JointRow(const TurntableScanner& scanner, const TurntableStart& st
   const TurntablePose pose = fit.Pose();
   row.values = Values(pose);
   row.u.resize(row.values.size());
-  if (!fit.solution.observability.undetermined.empty()) {
+  if (!determined) {
     row.note = "not determined: " + fit.solution.observability.undetermined.front();
   } else {
-    for (const Parameter& parameter : Summarize(fit.solution, fit.sigma, {}).parameters) {
+    for (const Parameter& parameter : Summarize(fit.solution, {}).parameters) {
       const int k = Find(fit.solution.problem.quantities, parameter.name);
       if (k <= Turntable::kTiltY && parameter.role == Role::kEstimate) row.u[k] = parameter.u;
     }
@@ -115,7 +123,7 @@ ComparisonRow JointRow(const TurntableScanner& scanner, const TurntableStart& st
   row.rms = flatness.rms;
   std::vector<TurntablePose> without;
   for (size_t t = 0; scanner.placements().size() > 1 && t < scanner.placements().size(); ++t)
-    without.push_back(scanner.Fit(start.pose, residuals, estimate, t).Pose());
+    without.push_back(Left(scanner, start, residuals, weighted && determined, estimate, t));
   row.held_out_rms = HeldOutRms(scanner.placements(), without);
   return row;
 }
@@ -128,10 +136,11 @@ Result<Comparison> TurntableScanner::Compare() const {
   for (const PlaneFit kind : {PlaneFit::kVertical, PlaneFit::kOrthogonal})
     for (const double step : kSteps) comparison.rows.push_back(GridRow(*this, start, step, kind));
   using enum Turntable::Residuals;
-  comparison.rows.push_back(JointRow(*this, start, "joint, point to plane", kPlane, {}));
-  comparison.rows.push_back(JointRow(*this, start, "joint, depth", kDepth, {}));
+  comparison.rows.push_back(JointRow(*this, start, "joint, point to plane", kPlane, false, {}));
+  comparison.rows.push_back(JointRow(*this, start, "joint, depth", kDepth, false, {}));
   comparison.rows.push_back(
-      JointRow(*this, start, "joint, depth, tilts", kDepth, {Turntable::kTiltX, Turntable::kTiltY}));
+      JointRow(*this, start, "joint, depth, weighted, tilts", kDepth, true, {Turntable::kTiltX, Turntable::kTiltY}));
+  comparison.rows.push_back(JointRow(*this, start, "joint, depth, weighted", kDepth, true, {}));
   return comparison;
 }
 

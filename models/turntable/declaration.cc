@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 #include "io/message.h"
+#include "models/turntable/influences.h"
 
 namespace scancal {
 namespace {
@@ -21,12 +22,6 @@ Dimension DimensionOf(std::string_view column) {
   const auto found = kColumns.find(column);
   return found == kColumns.end() ? Dimension::kNone : found->second;
 }
-
-// Influences of the specification that this version does not model yet: declared ones are named in a warning.
-const std::set<std::string> kNotYetModelled = {
-    "noise_z", "line_correlation", "encoder_cos1", "encoder_sin1", "encoder_cos2", "encoder_sin2", "shear", "linearity",
-    "form",    "flatness",         "one_plate",    "temperature",  "expansion"};
-const std::set<std::string> kVariesWithinData = {"noise_y", "encoder_jitter"};
 
 double UnitFactor(Unit unit, const Units& units) {
   return units.Of(unit == Unit::kMm ? Dimension::kLength : unit == Unit::kRad ? Dimension::kAngle : Dimension::kNone);
@@ -163,30 +158,6 @@ Result<void> SetParameters(const Dataset& dataset, Turntable* model) {
   return {};
 }
 
-Result<void> SetInfluences(const Dataset& dataset, Turntable* model, std::vector<std::string>* warnings) {
-  for (const InfluenceSetting& setting : dataset.influences) {
-    const std::string place = "influences: " + setting.name + ": ";
-    if (kNotYetModelled.contains(setting.name)) {
-      warnings->push_back(place + "declared, but not part of u in this version");
-      continue;
-    }
-    const int index = Find(model->quantities(), setting.name);
-    const bool varies = kVariesWithinData.contains(setting.name);
-    if (index < 0 || !(varies || setting.name == "scale_y" || setting.name == "scale_z"))
-      return InFile(dataset, place + "unknown influence, expected noise_y, encoder_jitter, scale_y, scale_z, ...");
-    if (varies && setting.estimate) continue;  // u comes from the residuals anyway
-    if (setting.estimate)
-      return InFile(dataset,
-                    place + "not determined by planes, expected its standard uncertainty in place of estimate");
-    Quantity& quantity = model->quantity(index);
-    if (quantity.role != Role::kHold) return InFile(dataset, place + "declared twice, here and under parameters");
-    if (setting.u <= 0) continue;
-    quantity.role = Role::kConsider;
-    quantity.u = setting.u * UnitFactor(quantity.unit, dataset.units);
-  }
-  return {};
-}
-
 }  // namespace
 
 Result<TurntableDeclaration> DeclareTurntable(const Dataset& dataset, Turntable* model) {
@@ -211,7 +182,7 @@ Result<TurntableDeclaration> DeclareTurntable(const Dataset& dataset, Turntable*
   if (result.scans.empty()) top.Fail("targets", "expected at least one target");
   SCANCAL_RETURN_IF_ERROR(top.Finish());
   SCANCAL_RETURN_IF_ERROR(SetParameters(dataset, model));
-  SCANCAL_RETURN_IF_ERROR(SetInfluences(dataset, model, &result.warnings));
+  SCANCAL_RETURN_IF_ERROR(SetInfluences(dataset, model, &result));
   return result;
 }
 

@@ -1,5 +1,6 @@
 // What a turntable's dataset.yaml declares.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 #include "io/dataset.h"
@@ -27,7 +28,8 @@ struct TurntableDeclaration {
   double sense = 1;  // alpha = sense * reading: clockwise seen from +Z is positive
   GridBox search;    // of M and N, mm
   std::vector<ScanDeclaration> scans;
-  std::vector<std::string> warnings;  // what is declared and not yet used
+  std::optional<double> line_correlation;  // points; declared
+  std::vector<std::string> warnings;       // worth knowing
 };
 
 // Takes every key of the data set; the roles of `model`'s quantities are set from parameters and influences.

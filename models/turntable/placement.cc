@@ -163,9 +163,22 @@ std::vector<Turntable::View> Views(const std::vector<Profile>& profiles, Turntab
   for (const Profile& profile : profiles) {
     const bool along_range = residuals == Turntable::Residuals::kDepth && profile.ranged;
     const auto points = PseudoPoints(along_range ? *profile.ranged : profile.factor);
-    views.push_back({profile.alpha, {points.begin(), points.end()}, profile.count, along_range});
+    Turntable::View& view = views.emplace_back();
+    view = {profile.alpha, {points.begin(), points.end()}, profile.count, along_range};
+    Eigen::MatrixXd line(3, 2);
+    for (int i = 0; i < 3; ++i)
+      line.row(i) = std::sqrt(profile.count / 3) * Eigen::RowVector2d(1, points[i].z - points[1].z);
+    view.line = WithoutPureError(view, line);
   }
   return views;
+}
+
+Eigen::MatrixXd WithoutPureError(const Turntable::View& view, const Eigen::MatrixXd& columns) {
+  if (!view.along_range) return columns;
+  Eigen::MatrixXd explained(std::ssize(view.points), 2);
+  for (Eigen::Index i = 0; i < explained.rows(); ++i)
+    explained.row(i) = view.points[i].weight * Eigen::RowVector2d(view.points[i].y, view.points[i].z);
+  return explained * Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(explained).solve(columns);
 }
 
 Result<void> CheckPlausible(const std::vector<Placement>& placements, const Units& units) {

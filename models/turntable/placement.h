@@ -40,6 +40,10 @@ Placement CompressPlacement(const RawScan& scan, const TurntablePose& pose);
 // The profiles as the model sees them.
 std::vector<Turntable::View> Views(const std::vector<Profile>& profiles, Turntable::Residuals residuals);
 
+// What of errors that run along a profile moves its line, without their share in what no line explains: that is noise,
+// and large. A profiler's line explains all that is affine in z; a lidar's what is linear in (y, z).
+Eigen::MatrixXd WithoutPureError(const Turntable::View& view, const Eigen::MatrixXd& columns);
+
 // Units and angles that cannot be: "angles span 30 rad ...; are they degrees?"
 Result<void> CheckPlausible(const std::vector<Placement>& placements, const Units& units);
 

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 #include "io/progress.h"
+#include "models/parts/correlated_noise.h"
+#include "models/parts/median.h"
+#include "models/turntable/smooth_columns.h"
 #include "models/turntable/verdicts.h"
 
 namespace scancal {
@@ -56,6 +59,26 @@ PureError Pooled(const std::vector<Placement>& placements) {
     }
   }
   return sum;
+}
+
+// Line correlation declared as a length: what it adds to the offset and the slope of a profile of the usual size.
+void DeclareLineCorrelation(const TurntableDeclaration& declaration, const std::vector<Placement>& placements,
+                            Turntable* model) {
+  if (!declaration.line_correlation) return;
+  const Quantity& noise = model->quantities()[Turntable::kNoiseY];
+  const double sigma = noise.role == Role::kConsider ? noise.u : std::max(Pooled(placements).sigma(), kLeastSigma_mm);
+  std::vector<double> counts, spreads;
+  for (const Placement& placement : placements) {
+    for (const Profile& profile : placement.profiles) {
+      counts.push_back(profile.count);
+      spreads.push_back(profile.factor(1, 1) / profile.factor(0, 0));
+    }
+  }
+  const LineNoise excess = ExcessOfCorrelatedNoise(*declaration.line_correlation, Median(counts), Median(spreads));
+  for (const auto& [k, u] : {std::pair{Turntable::kLineOffset, excess.offset}, {Turntable::kLineSlope, excess.slope}}) {
+    model->quantity(k).role = u > 0 ? Role::kConsider : Role::kHold;
+    model->quantity(k).u = sigma * u;
+  }
 }
 
 }  // namespace
@@ -111,17 +134,17 @@ TurntableFit TurntableScanner::Fit(const TurntablePose& pose, Turntable::Residua
   const auto model = std::make_shared<Turntable>(residuals);
   for (int k = 0; k < std::ssize(model_.quantities()); ++k) model->quantity(k) = model_.quantities()[k];
   for (const int k : estimate) model->quantity(k).role = Role::kEstimate;
-  Quantity& noise = model->quantity(Turntable::kNoiseY);
-  if (noise.role != Role::kConsider) noise.u = fit.sigma;
-  noise.role = Role::kConsider;
-
+  DeclareLineCorrelation(declaration_, placements, model.get());
   for (size_t t = 0; t < placements.size(); ++t) {
     Turntable::Target& target = fit.targets.emplace_back();
     target.name = placements[t].name;
     target.views = Views(placements[t].profiles, residuals);
     const auto [normal, distance] = storeys[t].FitPlane(pose.M, pose.N);
     Turntable::SetPlane(normal, distance, &target);
+    if (residuals == Turntable::Residuals::kDepth)
+      AddForm(placements[t].profiles, pose, normal, distance, &target.views);
   }
+  if (residuals == Turntable::Residuals::kDepth) AddBend(placements, &fit.targets);
   Problem problem = MakeProblem<Turntable>(model, fit.targets);
   problem.WeighEqually(fit.sigma);
   Estimate from = NominalStart(problem);
@@ -132,6 +155,12 @@ TurntableFit TurntableScanner::Fit(const TurntablePose& pose, Turntable::Residua
     ++e;
   }
   fit.solution = Solve(std::move(problem), from, {max_iterations});
+  return fit;
+}
+
+TurntableFit TurntableScanner::FitWeighted(const TurntableFit& plain, int max_iterations) const {
+  TurntableFit fit = plain;
+  fit.solution = SolveWeighted(plain.solution, kLeastSigma_mm, {max_iterations});
   return fit;
 }
 
@@ -152,15 +181,17 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
   const bool plane = choice.residual == "plane";
   if (!plane && !choice.residual.empty() && choice.residual != "depth")
     return Error{"residual: found \"" + choice.residual + "\", expected depth or plane"};
+  const bool weighted = !plane && !choice.equal_weights;
   SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
   const auto began = std::chrono::steady_clock::now();
-  const TurntableFit fit = Fit(start.pose, plane ? Turntable::Residuals::kPlane : Turntable::Residuals::kDepth, {}, {},
-                               choice.max_iterations);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
+  TurntableFit fit = Fit(start.pose, plane ? Turntable::Residuals::kPlane : Turntable::Residuals::kDepth, {}, {},
+                         choice.max_iterations);
   SCANCAL_RETURN_IF_ERROR(CheckDetermined(fit));
+  if (weighted) fit = FitWeighted(fit, choice.max_iterations);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
 
   // Within a profile the plain residual repeats as the depth does, seen at an angle: its pure error is not comparable.
-  Calibration result = Summarize(fit.solution, fit.sigma, plane ? PureError{} : Pooled(placements_));
+  Calibration result = Summarize(fit.solution, plane ? PureError{} : Pooled(placements_));
   result.lack_of_fit.pure_error_sigma = Pooled(placements_).sigma();
   result.model = kTurntable.name;
   result.name = declaration_.dataset.name;

@@ -45,6 +45,8 @@ class TurntableScanner final : public Scanner {
   // (Turntable::kTiltX); without: leave that placement out.
   TurntableFit Fit(const TurntablePose& pose, Turntable::Residuals residuals, const std::vector<int>& estimate = {},
                    std::optional<size_t> without = {}, int max_iterations = 100) const;
+  // The headline: from a depth fit with equal weights to its variances and generalised least squares.
+  TurntableFit FitWeighted(const TurntableFit& plain, int max_iterations = 100) const;
   const std::vector<Placement>& placements() const { return placements_; }
   TurntablePose Nominal() const;  // every quantity as declared: what the search uses for all but M and N
   // The box of the search with the declared step.

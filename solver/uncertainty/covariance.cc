@@ -5,12 +5,6 @@
 namespace scancal {
 namespace {
 
-double QuantityCount(const Problem& problem) {
-  const auto system = problem.With({Scope::kSystem}, Role::kEstimate).size();
-  const auto own = problem.With({Scope::kTarget}, Role::kEstimate).size();
-  return static_cast<double>(system + own * problem.targets.size());
-}
-
 // (I - H)^-1/2 r of one cluster; a direction that the cluster alone determines (leverage 1) has no residual to correct.
 Eigen::VectorXd Corrected(const Eigen::MatrixXd& hat, const Eigen::VectorXd& r) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd::Identity(hat.rows(), hat.cols()) - hat);
@@ -20,6 +14,12 @@ Eigen::VectorXd Corrected(const Eigen::MatrixXd& hat, const Eigen::VectorXd& r) 
 }
 
 }  // namespace
+
+double QuantityCount(const Problem& problem) {
+  const auto system = problem.With({Scope::kSystem}, Role::kEstimate).size();
+  const auto own = problem.With({Scope::kTarget}, Role::kEstimate).size();
+  return static_cast<double>(system + own * problem.targets.size());
+}
 
 Eigen::MatrixXd InverseInformation(const Linearization& linear) {
   const auto n = linear.factor.cols();

@@ -6,6 +6,8 @@
 
 namespace scancal {
 
+double QuantityCount(const Problem& problem);  // estimated ones, of the system and of every target
+
 // (J'J)^-1 of the system after elimination of the targets' own quantities; from the triangle, J'J is never formed.
 Eigen::MatrixXd InverseInformation(const Linearization& linear);
 

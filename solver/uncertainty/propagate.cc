@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 #include "solver/uncertainty/covariance.h"
+#include "solver/weigh.h"
 
 namespace scancal {
 namespace {
@@ -37,16 +38,6 @@ class Meat {
   std::set<std::string> priors_;
 };
 
-// Scores of one view's instances of one quantity: weighted = J~_v' mix (system x rows), b = dr/dq (rows).
-Eigen::MatrixXd Scores(const Eigen::MatrixXd& weighted, const Eigen::VectorXd& b, int points, Scope scope) {
-  if (scope != Scope::kPoint) return weighted * b;
-  const Eigen::Index per_point = b.size() / points;
-  Eigen::MatrixXd scores(weighted.rows(), points);
-  for (int i = 0; i < points; ++i)
-    scores.col(i) = weighted.middleCols(i * per_point, per_point) * b.segment(i * per_point, per_point);
-  return scores;
-}
-
 }  // namespace
 
 Eigen::MatrixXd Budget::Total() const {
@@ -74,13 +65,11 @@ Budget Propagate(const Problem& problem, const Estimate& fit, const Linearizatio
         meat.AddPrior(view.prior, Scope::kTarget, left);
         continue;
       }
-      const Eigen::MatrixXd weighted = view.Weighted(left);
-      Eigen::VectorXd r;
-      Eigen::MatrixXd b;
-      Block{view.rows, 1, {}, {}, {}}.Evaluate(q.data(), influences, &r, &b);
+      const Eigen::MatrixXd weighted = view.WeightedFromLeft(left);
+      const Eigen::MatrixXd b = RawDerivatives(view, q, influences);
       for (Eigen::Index k = 0; k < n; ++k) {
         const Quantity& quantity = influence(k);
-        const Eigen::MatrixXd scores = Scores(weighted, b.col(k) * quantity.u, view.rows->points(), quantity.scope);
+        const Eigen::MatrixXd scores = weighted * Instances(b.col(k) * quantity.u, view.rows->points(), quantity.scope);
         if (quantity.scope == Scope::kView || quantity.scope == Scope::kPoint) {
           meat.Add(quantity.Source(), quantity.scope, scores);
         } else {

@@ -37,20 +37,16 @@ class CompareTest : public CliTest {
   }
 };
 
-TEST_F(CompareTest, NineRowsInTheirOrder) {
+TEST_F(CompareTest, TenRowsInTheirOrder) {
   const Outcome outcome = RunScancal({"compare", SmallSearch().string()});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   const std::vector<std::string> rows = Rows(outcome.out);
-  const std::vector<std::string> methods = {"grid, as published, step 1",
-                                            "grid, as published, step 0.1",
-                                            "grid, as published, step 0.01",
-                                            "grid, orthogonal, step 1",
-                                            "grid, orthogonal, step 0.1",
-                                            "grid, orthogonal, step 0.01",
-                                            "joint, point to plane",
-                                            "joint, depth",
-                                            "joint, depth, tilts"};
+  const std::vector<std::string> methods = {"grid, as published, step 1",    "grid, as published, step 0.1",
+                                            "grid, as published, step 0.01", "grid, orthogonal, step 1",
+                                            "grid, orthogonal, step 0.1",    "grid, orthogonal, step 0.01",
+                                            "joint, point to plane",         "joint, depth",
+                                            "joint, depth, weighted, tilts", "joint, depth, weighted"};
   ASSERT_EQ(rows.size(), methods.size()) << outcome.out;
   // Nodes stand before the seconds, at the end of the row.
   const std::vector<double> nodes = {12, 651, 60501, 12, 651, 60501};
@@ -70,7 +66,7 @@ TEST_F(CompareTest, NineRowsInTheirOrder) {
 TEST_F(CompareTest, AFinerGridComesNearerToTheJointFit) {
   const Outcome outcome = RunScancal({"compare", SmallSearch().string()});
   const std::vector<std::string> rows = Rows(outcome.out);
-  ASSERT_EQ(rows.size(), 9U);
+  ASSERT_EQ(rows.size(), 10U);
   const auto depth = Numbers(rows[7], "joint, depth"), plane = Numbers(rows[6], "joint, point to plane"),
              fine = Numbers(rows[5], "grid, orthogonal, step 0.01"),
              finer_than = Numbers(rows[4], "grid, orthogonal, step 0.1");
@@ -86,7 +82,7 @@ TEST_F(CompareTest, OnePlacementHasNoHeldOutResidual) {
   const Outcome outcome = RunScancal({"compare", Path("data").string()});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   for (const std::string& row : Rows(outcome.out)) EXPECT_THAT(row, HasSubstr(" - ")) << row;
-  EXPECT_EQ(Rows(outcome.out).size(), 9U);
+  EXPECT_EQ(Rows(outcome.out).size(), 10U);
 }
 
 TEST_F(CompareTest, TheSurfaceHasEveryNodeAndItsMinimumWhereItIsReported) {

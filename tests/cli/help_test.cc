@@ -56,7 +56,7 @@ TEST(HelpTest, VersionIsOneLine) {
 }
 
 TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
-  EXPECT_THAT(HelpFlags("refine"), ElementsAre("out", "residual", "max_iterations"));
+  EXPECT_THAT(HelpFlags("refine"), ElementsAre("out", "residual", "weights", "max_iterations"));
   EXPECT_THAT(HelpFlags("compare"), ElementsAre("surface"));
   EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out"));
   EXPECT_THAT(HelpFlags("simulate"),

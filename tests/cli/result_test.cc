@@ -87,14 +87,27 @@ TEST_F(ResultTest, TheCovarianceIsSymmetricAndAgreesWithU) {
   }
 }
 
-TEST_F(ResultTest, UIsCoveredAndClustered) {
+TEST_F(ResultTest, UIsOfTheWeightedFitAndTheOthersStandBesideIt) {
   for (const char* name : {"M", "N"}) {
     const Json& p = ParameterOf(result_, name);
     EXPECT_NEAR(p["U"], p["k"].get<double>() * p["u"].get<double>(), 1e-12);
+    EXPECT_GT(p["dof"], 60);  // 120 profiles tell the variances
+    EXPECT_GT(p["k"], 1.96);
+    EXPECT_LT(p["k"], 2.01);
+    EXPECT_NEAR(p["u_clustered"].get<double>() / p["u"].get<double>(), 1, 0.4);
+    EXPECT_NEAR(p["u_naive"].get<double>() / p["u"].get<double>(), 1, 0.4);  // white noise
+  }
+  EXPECT_GT(result_["joint"]["k"], ParameterOf(result_, "M")["k"]);
+}
+
+TEST_F(ResultTest, EqualWeightsHaveTheClusteredU) {
+  const Json equal = Refined(data_, 0, {"--weights=equal"});
+  for (const char* name : {"M", "N"}) {
+    const Json& p = ParameterOf(equal, name);
     EXPECT_NEAR(p["dof"], 109, 1e-9);       // 120 profiles less M, N and three planes of three
     EXPECT_NEAR(p["k"], 1.98196749, 1e-6);  // Student's t, 97.5 %, 109
     EXPECT_NEAR(p["u"], p["u_clustered"], 1e-12);
-    EXPECT_NEAR(p["u_naive"].get<double>() / p["u"].get<double>(), 1, 0.4);  // white noise
+    EXPECT_EQ(p["u_naive"], ParameterOf(result_, name)["u_naive"]);
   }
 }
 

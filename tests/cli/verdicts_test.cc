@@ -141,7 +141,7 @@ TEST_F(VerdictsOfProgramTest, NoConvergenceIsUnreliable) {
   const fs::path data = Path("noisy");
   Simulate(data, {"--profiles=40", "--points=20", "--sweep=2", "--noise=1"});
   Append(data / "dataset.yaml", "parameters: {tilt_x: estimate, tilt_y: estimate}\n");
-  const Json result = Refined(data, 2, {"--max_iterations=1"});
+  const Json result = Refined(data, 2, {"--max_iterations=1", "--weights=equal"});
   EXPECT_EQ(result["converged"], false);
   const std::string reasons = Sentences(result, "unreliable");
   EXPECT_THAT(reasons, HasSubstr("did not converge"));

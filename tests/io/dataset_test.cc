@@ -72,8 +72,8 @@ TEST_F(DatasetTest, ReadsWhatEveryModelShares) {
   ASSERT_EQ(dataset->influences.size(), 3U);
   EXPECT_EQ(dataset->influences[0].name, "noise_y");
   EXPECT_EQ(dataset->influences[0].u, 0.05);
-  EXPECT_FALSE(dataset->influences[0].estimate);
-  EXPECT_TRUE(dataset->influences[1].estimate);
+  EXPECT_EQ(dataset->influences[0].role, "consider");
+  EXPECT_EQ(dataset->influences[1].role, "estimate");
   EXPECT_EQ(dataset->influences[2].u, 0);
 
   EXPECT_THAT(dataset->yaml.Finish().error().message, HasSubstr("unknown key 'rotation'"));
@@ -165,7 +165,7 @@ TEST_F(DatasetTest, InfluencesAreUncertaintiesOrEstimated) {
   const std::string expected = "expected a standard uncertainty of 0 or more, or estimate";
   EXPECT_THAT(Error("influences: {noise_y: -0.1}\n"), EndsWith("influences: noise_y: found \"-0.1\", " + expected));
   EXPECT_THAT(Error("influences: {noise_y: big}\n"), EndsWith("influences: noise_y: found \"big\", " + expected));
-  EXPECT_THAT(Error("influences: {noise_y: {u: 1}}\n"), EndsWith("noise_y: found a mapping, " + expected));
+  EXPECT_THAT(Error("influences: {noise_y: {u: 1}}\n"), HasSubstr("noise_y: found no role"));
   EXPECT_THAT(Error("influences: {noise_y: inf}\n"), EndsWith("found \"inf\", " + expected));
 }
 

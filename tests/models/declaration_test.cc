@@ -237,10 +237,21 @@ TEST_F(DeclarationTest, EveryInfluenceOfTheSpecificationIsAccepted) {
   const auto declaration = DeclareWith(
       "influences: {noise_y: 0.05, noise_z: 0.01, line_correlation: 40, encoder_jitter: 0.003, encoder_cos1: 0.001, "
       "encoder_sin1: 0.001, encoder_cos2: 0.001, encoder_sin2: 0.001, scale_y: 1e-4, scale_z: 1e-4, shear: 0.01, "
-      "linearity: 0.01, form: 0.005, flatness: 0.02, temperature: 1, expansion: 2.3e-5}\n");
+      "linearity: 0.01, flatness: 0.02, one_plate: yes, temperature: 1, expansion: 2.3e-5}\n");
   ASSERT_TRUE(declaration.ok()) << declaration.error().message;
-  for (const std::string& warning : declaration->warnings) EXPECT_THAT(warning, HasSubstr("not part of u"));
-  EXPECT_EQ(declaration->warnings.size(), 12U);  // noise_y, encoder_jitter and the scales are modelled
+  EXPECT_THAT(declaration->warnings, IsEmpty());
+  EXPECT_EQ(declaration->line_correlation, 40);
+}
+
+TEST_F(DeclarationTest, InfluencesThatCannotBe) {
+  EXPECT_THAT(ErrorWith("influences: {form: 0.005, flatness: 0.02}\n"), HasSubstr("form or flatness, not both"));
+  EXPECT_THAT(ErrorWith("influences: {form: estimate}\n"), HasSubstr("form: expected its size"));
+  EXPECT_THAT(ErrorWith("influences: {one_plate: 3}\n"), HasSubstr("one_plate: expected yes or no"));
+  EXPECT_THAT(ErrorWith("influences: {noise_y: yes}\n"), HasSubstr("noise_y: found yes, expected a standard"));
+  EXPECT_THAT(ErrorWith("influences: {noise_y: 0}\n"), HasSubstr("noise_y: expected more than 0"));
+  EXPECT_THAT(ErrorWith("influences: {noise_z: estimate}\n"), HasSubstr("cannot tell it from noise_y"));
+  EXPECT_THAT(ErrorWith("influences: {line_correlation: 0.5}\n"), HasSubstr("in points, 1 is white noise"));
+  EXPECT_THAT(ErrorWith("influences: {temperature: 2}\n"), HasSubstr("temperature (K) and expansion (1/K) together"));
 }
 
 TEST_F(DeclarationTest, TheSamePointsTwice) {

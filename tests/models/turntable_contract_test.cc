@@ -70,7 +70,7 @@ struct TurntableCase {
     }
     const auto dataset = ReadDataset(folder.path());
     const auto scanner = (*FindScannerKind(*dataset))->load(*dataset);
-    const auto result = (*scanner)->Calibrate({kResiduals == Turntable::Residuals::kDepth ? "depth" : "plane", 100});
+    const auto result = (*scanner)->Calibrate({kResiduals == Turntable::Residuals::kDepth ? "depth" : "plane"});
     EXPECT_TRUE(result.ok() && result->ok());
     return Eigen::Vector4d(result->Find("M")->value - scene.pose.M, result->Find("N")->value - scene.pose.N,
                            result->Find("tilt_x")->value - scene.pose.tilt_x,

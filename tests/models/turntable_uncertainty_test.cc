@@ -40,7 +40,7 @@ Study Repeat(TurntableScene scene, Turntable::Residuals residuals, int trials) {
         pure.dof += profile.pure_error.dof;
       }
     }
-    const Calibration result = Summarize(solution, scene.noise_y, pure);
+    const Calibration result = Summarize(solution, pure);
     study.lack_of_fit += result.lack_of_fit.F / trials;
     study.warned_of_jackknife += std::any_of(result.warnings.begin(), result.warnings.end(), [](const auto& warning) {
       return warning.find("leaving one target out") != std::string::npos;
@@ -96,7 +96,7 @@ TEST(TurntableUncertainty, TheJackknifeWarnsWhenPlacementsDisagree) {
                                            MakeTargets(placements, {}));
   problem.WeighEqually(scene.noise_y);
   const Estimate start = StartNear(problem, scene.pose);
-  const Calibration result = Summarize(Solve(std::move(problem), start), scene.noise_y, {});
+  const Calibration result = Summarize(Solve(std::move(problem), start), {});
   ASSERT_FALSE(result.warnings.empty());
   EXPECT_NE(result.warnings[0].find("N: leaving one target out"), std::string::npos) << result.warnings[0];
 }

@@ -151,7 +151,7 @@ TEST(TextTest, TheReportNamesEverythingThatMatters) {
 
 TEST(TextTest, DeclaredInfluencesDropTheFootnote) {
   Calibration c = SomeCalibration();
-  c.budget.resize(2);
+  c.budget.push_back({"scale_y", 'B', Unit::kOne, 1e-4, {}, {0.001, 0.002}, {0.01, 0.01}, 1e9});
   EXPECT_THAT(ToText(c), Not(HasSubstr("traceable")));
 }
 

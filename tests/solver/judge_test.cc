@@ -15,7 +15,7 @@ Calibration Calibrated(const std::vector<LineModel::Target>& targets, const Line
   Problem problem = MakeProblem<LineModel>(std::make_shared<LineModel>(model), targets);
   problem.WeighEqually(noise);
   const Estimate start = NominalStart(problem);
-  return Summarize(Solve(std::move(problem), start), noise, {});
+  return Summarize(Solve(std::move(problem), start), {});
 }
 
 TEST(Judge, HasNoDoubtAboutSoundData) { EXPECT_THAT(Calibrated(LineScene().Make()).unreliable, IsEmpty()); }

@@ -105,7 +105,7 @@ TEST(Summarize, AddsWhatWasConsideredToTheClusteredFigure) {
   Problem problem = MakeProblem<LineModel>(std::make_shared<LineModel>(model), scene.Make());
   problem.WeighEqually(scene.noise);
   const Estimate start = NominalStart(problem);
-  const Calibration result = Summarize(Solve(std::move(problem), start), scene.noise, {});
+  const Calibration result = Summarize(Solve(std::move(problem), start), {});
   ASSERT_EQ(result.estimated, std::vector<std::string>{"slope"});
   const Parameter& slope = *result.Find("slope");
   ASSERT_EQ(result.budget.size(), 2u);
@@ -125,7 +125,7 @@ TEST(Summarize, CountsAPriorOfATargetOnce) {  // it is a cluster of the clustere
   Problem problem = MakeProblem<LineModel>(std::make_shared<LineModel>(model), scene.Make());
   problem.WeighEqually(scene.noise);
   const Estimate start = NominalStart(problem);
-  const Calibration result = Summarize(Solve(std::move(problem), start), scene.noise, {});
+  const Calibration result = Summarize(Solve(std::move(problem), start), {});
   EXPECT_NEAR(result.Find("slope")->u, result.Find("slope")->u_clustered, 1e-15);
 }
 

@@ -1,0 +1,95 @@
+#include "models/turntable/smooth_columns.h"
+#include <Eigen/QR>
+#include <limits>
+
+namespace scancal {
+namespace {
+
+constexpr double kNoExtent_mm = 1e-9;
+
+// Coordinates in the plate: across (at right angles to the axis of the table) and up.
+struct PlateFrame {
+  explicit PlateFrame(const Eigen::Vector3d& normal) {
+    const Eigen::Vector3d sideways = normal.cross(Eigen::Vector3d::UnitZ());
+    across = sideways.norm() > 1e-6 ? Eigen::Vector3d(sideways.normalized()) : Eigen::Vector3d(normal.unitOrthogonal());
+    up = across.cross(normal);
+  }
+  Eigen::Vector2d At(const Eigen::Vector3d& p) const { return {across.dot(p), up.dot(p)}; }
+  Eigen::Vector3d across, up;
+};
+
+std::vector<PseudoPoint> PointsOf(const Profile& profile) {
+  const auto points = PseudoPoints(profile.factor);
+  return {points.begin(), points.end()};
+}
+
+// Smallest and largest of every coordinate.
+class Bounds {
+ public:
+  void Add(const Eigen::Array2d& at) {
+    lowest_ = lowest_.min(at);
+    highest_ = highest_.max(at);
+  }
+  Eigen::Array2d Scaled(const Eigen::Array2d& at) const {  // to [-1, 1]
+    return (2 * at - lowest_ - highest_) / (highest_ - lowest_).max(kNoExtent_mm);
+  }
+
+ private:
+  Eigen::Array2d lowest_ = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), highest_ = -lowest_;
+};
+
+// weight * (a + b z) at the points of the view, the least squares line through `values` at the points of the profile.
+template <class ValuesAt>
+Eigen::MatrixXd AsLine(const Profile& profile, const Turntable::View& view, Eigen::Index columns,
+                       const ValuesAt& values_at) {
+  const std::vector<PseudoPoint> points = PointsOf(profile);
+  Eigen::MatrixXd line(std::ssize(points), 2), values(std::ssize(points), columns), rows(std::ssize(view.points), 2);
+  for (Eigen::Index i = 0; i < line.rows(); ++i) {
+    line.row(i) = points[i].weight * Eigen::RowVector2d(1, points[i].z);
+    values.row(i) = points[i].weight * values_at(points[i]);
+  }
+  for (Eigen::Index i = 0; i < rows.rows(); ++i)
+    rows.row(i) = view.points[i].weight * Eigen::RowVector2d(1, view.points[i].z);
+  return WithoutPureError(view, rows * Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(line).solve(values));
+}
+
+}  // namespace
+
+void AddForm(const std::vector<Profile>& profiles, const TurntablePose& pose, const Eigen::Vector3d& normal,
+             double distance, std::vector<Turntable::View>* views) {
+  const PlateFrame frame(normal);
+  // Where the line of sight meets the plane: at the measured point itself, its noise would be a form.
+  const auto on_plate = [&](const Profile& profile, const PseudoPoint& p) -> Eigen::Array2d {
+    const Eigen::Vector3d measured = pose.Point(profile.alpha, p.y, p.z);
+    const Eigen::Vector3d sight = measured - pose.Point(profile.alpha, 0, profile.ranged ? 0 : p.z);
+    return frame.At(measured - (normal.dot(measured) - distance) / normal.dot(sight) * sight).array();
+  };
+  Bounds plate;
+  for (const Profile& profile : profiles)
+    for (const PseudoPoint& p : PointsOf(profile)) plate.Add(on_plate(profile, p));
+  for (size_t k = 0; k < profiles.size(); ++k) {
+    Turntable::View& view = (*views)[k];
+    view.form = AsLine(profiles[k], view, kFormModes, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
+      const Eigen::Array2d at = plate.Scaled(on_plate(profiles[k], p));
+      return Eigen::Map<const Eigen::RowVectorXd>(FormModesAt(at[0], at[1]).data(), kFormModes);
+    });
+  }
+}
+
+void AddBend(const std::vector<Placement>& placements, std::vector<Turntable::Target>* targets) {
+  Bounds depth;
+  for (const Placement& placement : placements)
+    for (const Profile& profile : placement.profiles)
+      for (const PseudoPoint& p : PointsOf(profile)) depth.Add(Eigen::Array2d(p.y, 0));
+  for (size_t t = 0; t < placements.size(); ++t) {
+    for (size_t k = 0; k < placements[t].profiles.size(); ++k) {
+      Turntable::View& view = (*targets)[t].views[k];
+      view.bend = AsLine(placements[t].profiles[k], view, 1, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
+        const double eta = depth.Scaled({p.y, 0})[0];
+        return Eigen::RowVectorXd::Constant(1, eta * eta);
+      });
+    }
+  }
+}
+
+}  // namespace scancal
