@@ -165,26 +165,39 @@ Eigen::MatrixXd Inverse(const Eigen::MatrixXd& information) {
          scale.asDiagonal();
 }
 
-// One Fisher step, the variances kept positive: those at zero stay there while the others move. Returns the largest
-// move in standard errors.
+// One step to the maximum of score'm - m'(information)m / 2, the variances kept positive: those that would fall or rise
+// too far go as far as they may, the others make the best of it; those at zero stay there. Returns the largest move in
+// standard errors.
 double Step(const Likelihood& likelihood, const Eigen::MatrixXd& information, const Eigen::VectorXd& least,
             Eigen::VectorXd* variance) {
   const auto n = variance->size();
   const Eigen::VectorXd error = likelihood.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd lowest = (*variance / kLargestStep).cwiseMax(least) - *variance,
+                        highest = *variance * (kLargestStep - 1);
   std::vector<Eigen::Index> free;
   for (Eigen::Index k = 0; k < n; ++k)
     if (likelihood.score[k] > 0 || (*variance)[k] > kAtZero * error[k]) free.push_back(k);
-  if (free.empty()) return 0;
-  const Eigen::VectorXd move = Inverse(information(free, free)) * Eigen::VectorXd(likelihood.score(free));
-  double largest = 0;
-  for (size_t i = 0; i < free.size(); ++i) {
-    double& v = (*variance)[free[i]];
-    const double next = std::max(
-        least[free[i]], std::clamp(v + move[static_cast<Eigen::Index>(i)], v / kLargestStep, v * kLargestStep));
-    largest = std::max(largest, std::abs(next - v) / error[free[i]]);
-    v = next;
+  Eigen::VectorXd move = Eigen::VectorXd::Zero(n);
+  for (bool bounded = true; bounded && !free.empty();) {
+    const Eigen::VectorXd score = likelihood.score - information * move;  // where the bounded ones have gone
+    const Eigen::VectorXd best = Inverse(information(free, free)) * score(free);
+    bounded = false;
+    std::vector<Eigen::Index> left;
+    for (size_t i = 0; i < free.size(); ++i) {
+      const Eigen::Index k = free[i];
+      const double m = best[static_cast<Eigen::Index>(i)];
+      if (m >= lowest[k] && m <= highest[k]) {
+        left.push_back(k);
+        continue;
+      }
+      move[k] = std::clamp(m, lowest[k], highest[k]);
+      bounded = true;
+    }
+    if (!bounded) move(free) = best;
+    free = std::move(left);
   }
-  return largest;
+  *variance += move;
+  return move.cwiseAbs().cwiseQuotient(error).maxCoeff();
 }
 
 class Estimation {
