@@ -201,6 +201,27 @@ TEST(Weigh, DividesEveryViewByItsOwnCovariance) {
   EXPECT_LT((mix * v * mix.transpose() - Eigen::MatrixXd::Identity(5, 5)).norm(), 1e-12);
 }
 
+// Shifts of views as a random walk that forgets: neighbours have correlation 0.7.
+TEST(Neighbours, AreToldWhenTheyAreNotIndependent) {
+  LineScene scene;
+  scene.views = 100;
+  scene.noise = 0.03;
+  for (const double correlation : {0.0, 0.7}) {
+    auto targets = scene.Make();
+    Random random(7, 0);
+    for (auto& target : targets) {
+      double shift = random.Normal();
+      for (auto& view : target.views) {
+        shift = correlation * shift + std::sqrt(1 - correlation * correlation) * random.Normal();
+        for (double& y : view.y) y += 0.3 * shift;
+      }
+    }
+    const Calibration result = Summarize(Weighted(LineProblem(targets, {})), {});
+    EXPECT_NEAR(result.neighbours, correlation, 4 / std::sqrt(297.0));
+    EXPECT_EQ(result.warnings.size(), correlation > 0 ? 1U : 0U);
+  }
+}
+
 std::vector<Misfit> Misfits(const LineScene& scene, double u_curvature = 0) {
   Problem problem = LineProblem(scene.Make(), {Role::kHold, Role::kEstimate});
   problem.quantities[LineModel::kCurvature].role = u_curvature > 0 ? Role::kConsider : Role::kHold;
