@@ -41,6 +41,20 @@ Json TargetJson(const TargetSummary& target) {
   return json;
 }
 
+Json ResidualsJson(const TargetSummary& target) {
+  const ViewResiduals& r = target.residuals;
+  Json json = {{"name", target.name}, {"lags", r.lags}, {"correlation", r.correlation}};
+  json["correlation_length"] = r.correlation_length > 0 ? Json(r.correlation_length) : Json(nullptr);
+  json["correlation_dies_out"] = r.dies_out;
+  json["sigma"] = r.sigma;
+  json["histogram"] = {
+      {"from", -r.histogram_limit}, {"to", r.histogram_limit}, {"unit", "sigma"}, {"counts", Json::array()}};
+  for (const double count : r.histogram) json["histogram"]["counts"].push_back(Whole(count));
+  json["histogram"]["below"] = Whole(r.below);
+  json["histogram"]["above"] = Whole(r.above);
+  return json;
+}
+
 Json ByParameter(const std::vector<std::string>& names, const std::vector<double>& values) {
   Json json = Json::object();
   for (size_t k = 0; k < values.size(); ++k) json[names[k]] = Number(values[k]);
@@ -102,7 +116,8 @@ Json ToJson(const Calibration& c) {
   json["surface"] = Json::object();
   json["jackknife"] = JackknifeJson(c);
   json["montecarlo"] = Json::object();
-  json["residuals"] = Json::object();
+  json["residuals"] = {{"targets", Json::array()}};
+  for (const TargetSummary& target : c.targets) json["residuals"]["targets"].push_back(ResidualsJson(target));
   json["volume"] = Json::object();
   json["data"] = {{"factors", Json::array()}, {"segments", ""}};
   json["converged"] = c.converged;

@@ -88,4 +88,10 @@ SCANCAL_FOR_EACH_PROCESSOR LineFactor FactorLine(const double* y, const double* 
   return {root, root * mean_z, root * mean_y + of_one, r11, slope * r11 + of_z, r22};
 }
 
+SCANCAL_FOR_EACH_PROCESSOR double SumOfProducts(const double* a, const double* b, size_t n) {
+  Lanes products;
+  ForEach(n, [&](size_t i, size_t k) SCANCAL_INLINE { products.sum[k] += a[i] * b[i]; });
+  return products.Total();
+}
+
 }  // namespace scancal

@@ -4,6 +4,19 @@
 #include <cmath>
 
 namespace scancal {
+namespace {
+
+// The triangle of the rows, its diagonal not negative.
+template <class Rows>
+ProfileFactor Triangle(const Rows& rows) {
+  const Eigen::HouseholderQR<Rows> qr(rows);
+  ProfileFactor r = qr.matrixQR().template topRows<3>().template triangularView<Eigen::Upper>();
+  for (int k = 0; k < 3; ++k)
+    if (r(k, k) < 0) r.row(k) = -r.row(k);
+  return r;
+}
+
+}  // namespace
 
 ProfileFactor Factor(std::span<const double> y, std::span<const double> z) {
   CHECK_EQ(y.size(), z.size());
@@ -19,10 +32,14 @@ ProfileFactor Factor(std::span<const double> y, std::span<const double> z, std::
   const auto n = std::ssize(y);
   Eigen::Matrix<double, Eigen::Dynamic, 3> rows = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(n, 3), 3);
   for (Eigen::Index i = 0; i < n; ++i) rows.row(i) << weights[i], weights[i] * z[i], weights[i] * y[i];
-  const Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 3>> qr(rows);
-  ProfileFactor r = qr.matrixQR().topRows<3>().triangularView<Eigen::Upper>();
-  for (int k = 0; k < 3; ++k)
-    if (r(k, k) < 0) r.row(k) = -r.row(k);
+  return Triangle(rows);
+}
+
+ProfileFactor Merged(std::span<const ProfileFactor> parts) {
+  CHECK(!parts.empty());
+  ProfileFactor r = parts.front();
+  for (const ProfileFactor& part : parts.subspan(1))
+    r = Triangle((Eigen::Matrix<double, 6, 3>() << r, part).finished());
   return r;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include "io/message.h"
 #include "io/progress.h"
@@ -85,6 +86,17 @@ bool LooksShuffled(const std::vector<RawProfile>& profiles) {
 }
 
 }  // namespace
+
+void OrderAlongLine(RawProfile* profile) {
+  const std::vector<double>& z = profile->z;
+  if (std::is_sorted(z.begin(), z.end())) return;
+  std::vector<size_t> order(z.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return z[a] < z[b]; });
+  const RawProfile from = *profile;
+  for (const auto column : {&RawProfile::y, &RawProfile::z, &RawProfile::range})
+    for (size_t i = 0; i < (from.*column).size(); ++i) (profile->*column)[i] = (from.*column)[order[i]];
+}
 
 SensorColumns ToSensor(double sense, const ScanBatch& batch) {
   SensorColumns points;

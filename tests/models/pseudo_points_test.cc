@@ -1,7 +1,6 @@
 #include "models/parts/pseudo_points.h"
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
-#include "models/turntable/placement.h"
 #include "solver/random.h"
 
 namespace scancal {
@@ -83,30 +82,12 @@ TEST(FactorLine, EqualsHouseholder) {
             1e-12 * Factor(points.y, points.z).norm());
 }
 
-TEST(CompressProfile, KnowsThePureErrorOfDepth) {
-  const Points points = Line(4000, 0.05, 6);
-  const Profile profile = CompressProfile(0, points.y, points.z, {});
-  EXPECT_EQ(profile.pure_error.dof, 3998);
-  EXPECT_NEAR(profile.pure_error.sigma(), 0.05, 4 * 0.05 / std::sqrt(2 * 3998.0));
-}
-
-TEST(CompressProfile, KnowsThePureErrorOfALidarAlongTheRange) {
-  // A wall 2 m ahead, slanted against the fan: noise of 10 mm along the range only.
-  Random random(7, 0);
-  std::vector<double> y, z, range;
-  for (int i = 0; i < 4000; ++i) {
-    const double bearing = -0.9 + 1.8 * i / 4000;
-    range.push_back(2000 / (std::cos(bearing) + 0.4 * std::sin(bearing)) + 10 * random.Normal());
-    y.push_back(range.back() * std::cos(bearing));
-    z.push_back(range.back() * std::sin(bearing));
-  }
-  const Profile profile = CompressProfile(0, y, z, range);
-  EXPECT_NEAR(profile.pure_error.sigma(), 10, 4 * 10 / std::sqrt(2 * 3998.0));
-}
-
-TEST(CompressProfile, OfOnePointHasNoDegreesOfFreedom) {
-  const std::vector<double> y = {70}, z = {3};
-  EXPECT_EQ(CompressProfile(0.1, y, z, {}).pure_error.dof, 0);
+TEST(Merged, IsTheFactorOfAllPoints) {
+  const Points points = Line(90, 0.05, 6);
+  const std::span<const double> y = points.y, z = points.z;
+  const ProfileFactor parts[] = {Factor(y.first(1), z.first(1)), Factor(y.subspan(1, 2), z.subspan(1, 2)),
+                                 Factor(y.subspan(3), z.subspan(3))};
+  EXPECT_LT((Merged(parts) - Factor(y, z)).norm(), 1e-12 * Factor(y, z).norm());
 }
 
 }  // namespace
