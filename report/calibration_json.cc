@@ -119,11 +119,11 @@ Json ToJson(const Calibration& c) {
   json["residuals"] = {{"targets", Json::array()}};
   for (const TargetSummary& target : c.targets) json["residuals"]["targets"].push_back(ResidualsJson(target));
   json["volume"] = Json::object();
-  json["data"] = {{"factors", Json::array()}, {"segments", ""}};
+  json["data"] = Json::object();
   json["converged"] = c.converged;
   json["iterations"] = c.iterations;
   json["inputs"] = Json::array();
-  for (const InputFile& input : c.inputs) json["inputs"].push_back({{"file", input.file}, {"sha256", input.sha256}});
+  for (const HashedFile& input : c.inputs) json["inputs"].push_back({{"file", input.file}, {"sha256", input.sha256}});
   json["command"] = c.command;
   json["version"] = c.version;
   return json;
@@ -151,6 +151,11 @@ Result<Calibration> CalibrationFromJson(const Json& json, const std::string& fil
     parameter.name = name;
     parameter.value = each["value"];
   }
+  if (json.contains("inputs") && json["inputs"].is_array())
+    for (const Json& each : json["inputs"])
+      if (each.is_object() && each.contains("file") && each["file"].is_string() && each.contains("sha256") &&
+          each["sha256"].is_string())
+        result.inputs.push_back({each["file"], each["sha256"]});
   return result;
 }
 

@@ -63,7 +63,7 @@ struct LackOfFit {              // of everything within views against everything
   double F = 0, dof1 = 0, dof2 = 0, p = 1;  // dof1 = 0: not computed
 };
 
-struct InputFile {
+struct HashedFile {
   std::string file, sha256;
 };
 
@@ -85,7 +85,7 @@ struct Calibration {
   int iterations = 0;
   bool converged = false;
   double seconds = 0;
-  std::vector<InputFile> inputs;
+  std::vector<HashedFile> inputs;
   std::string command, version;
 
   bool ok() const { return unreliable.empty(); }

@@ -128,6 +128,7 @@ Placement CompressPlacement(const RawScan& scan, const TurntablePose& pose) {
   Placement placement;
   placement.name = scan.name;
   placement.missing = scan.missing;
+  placement.warning = scan.warning;
   if (scan.off_line > 0) placement.set_aside[kReasonOffLine] = scan.off_line;
   std::vector<RawProfile> profiles = scan.profiles;
   if (const double off = SetAsideOffPlane(pose, &profiles); off > 0) placement.set_aside[kReasonOffPlane] = off;
