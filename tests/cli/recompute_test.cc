@@ -100,7 +100,7 @@ TEST_F(RecomputeTest, WarningsOfReadingRemain) {
   for (const std::string& name : kNames) {  // points of different profiles in turn
     const auto profiles = Profiles(ReadPoints(data / (name + ".csv")));
     std::vector<ScanPoint> points;
-    for (size_t i = 0; i < profiles[0].size(); ++i)
+    for (size_t i = 0; i < profiles[0].size(); i += 5)
       for (const auto& profile : profiles) points.push_back(profile[i]);
     WritePoints(data / (name + ".csv"), points);
   }
