@@ -94,4 +94,10 @@ SCANCAL_FOR_EACH_PROCESSOR double SumOfProducts(const double* a, const double* b
   return products.Total();
 }
 
+SCANCAL_FOR_EACH_PROCESSOR bool IsAscending(const double* values, size_t n) {
+  Lanes ascents;
+  if (n > 1) ForEach(n - 1, [&](size_t i, size_t k) SCANCAL_INLINE { ascents.sum[k] += values[i] <= values[i + 1]; });
+  return n < 2 || ascents.Total() == static_cast<double>(n - 1);
+}
+
 }  // namespace scancal

@@ -17,4 +17,6 @@ LineFactor FactorLine(const double* y, const double* z, size_t n);
 // sum a_i b_i, in the same lanes.
 double SumOfProducts(const double* a, const double* b, size_t n);
 
+bool IsAscending(const double* values, size_t n);  // nowhere descending, and no nan
+
 }  // namespace scancal

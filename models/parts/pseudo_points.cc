@@ -2,22 +2,9 @@
 #include <glog/logging.h>
 #include <Eigen/QR>
 #include <cmath>
+#include "models/parts/triangle.h"
 
 namespace scancal {
-namespace {
-
-// The triangle of the rows, its diagonal not negative.
-template <class Rows>
-ProfileFactor Triangle(const Rows& rows) {
-  const Eigen::HouseholderQR<Rows> qr(rows);
-  ProfileFactor r = qr.matrixQR().template topRows<3>().template triangularView<Eigen::Upper>();
-  for (int k = 0; k < 3; ++k)
-    if (r(k, k) < 0) r.row(k) = -r.row(k);
-  return r;
-}
-
-}  // namespace
-
 ProfileFactor Factor(std::span<const double> y, std::span<const double> z) {
   CHECK_EQ(y.size(), z.size());
   const LineFactor f = FactorLine(y.data(), z.data(), y.size());
@@ -32,14 +19,24 @@ ProfileFactor Factor(std::span<const double> y, std::span<const double> z, std::
   const auto n = std::ssize(y);
   Eigen::Matrix<double, Eigen::Dynamic, 3> rows = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(n, 3), 3);
   for (Eigen::Index i = 0; i < n; ++i) rows.row(i) << weights[i], weights[i] * z[i], weights[i] * y[i];
-  return Triangle(rows);
+  const Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 3>> qr(rows);
+  ProfileFactor r = qr.matrixQR().topRows<3>().triangularView<Eigen::Upper>();
+  for (int k = 0; k < 3; ++k)
+    if (r(k, k) < 0) r.row(k) = -r.row(k);
+  return r;
 }
 
 ProfileFactor Merged(std::span<const ProfileFactor> parts) {
   CHECK(!parts.empty());
+  using Rows = Eigen::Matrix<double, 12, 3>;  // of four factors: all segments of a profile in one go
+  using Column = Eigen::Matrix<double, 12, 1>;
   ProfileFactor r = parts.front();
-  for (const ProfileFactor& part : parts.subspan(1))
-    r = Triangle((Eigen::Matrix<double, 6, 3>() << r, part).finished());
+  for (size_t next = 1; next < parts.size();) {
+    Rows stacked = Rows::Zero();
+    stacked.topRows<3>() = r;
+    for (Eigen::Index row = 3; row < 12 && next < parts.size(); row += 3) stacked.middleRows<3>(row) = parts[next++];
+    r = Triangle<Column>(stacked.col(0), stacked.col(1), stacked.col(2));
+  }
   return r;
 }
 

@@ -77,7 +77,7 @@ Profile MakeProfile(double alpha, double count, std::vector<ProfileFactor> segme
 Profile CompressProfile(double alpha, std::span<const double> y, std::span<const double> z,
                         std::span<const double> range) {
   CHECK(!y.empty());
-  if (std::is_sorted(z.begin(), z.end())) return CompressInOrder(alpha, y, z, range);
+  if (IsAscending(z.data(), z.size())) return CompressInOrder(alpha, y, z, range);
   RawProfile ordered{0, alpha, {y.begin(), y.end()}, {z.begin(), z.end()}, {range.begin(), range.end()}};
   OrderAlongLine(&ordered);
   return CompressInOrder(alpha, ordered.y, ordered.z, ordered.range);

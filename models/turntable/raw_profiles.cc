@@ -7,6 +7,7 @@
 #include <set>
 #include "io/message.h"
 #include "io/progress.h"
+#include "models/parts/moments.h"
 
 namespace scancal {
 namespace {
@@ -89,7 +90,7 @@ bool LooksShuffled(const std::vector<RawProfile>& profiles) {
 
 void OrderAlongLine(RawProfile* profile) {
   const std::vector<double>& z = profile->z;
-  if (std::is_sorted(z.begin(), z.end())) return;
+  if (IsAscending(z.data(), z.size())) return;
   std::vector<size_t> order(z.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return z[a] < z[b]; });

@@ -85,9 +85,14 @@ TEST(FactorLine, EqualsHouseholder) {
 TEST(Merged, IsTheFactorOfAllPoints) {
   const Points points = Line(90, 0.05, 6);
   const std::span<const double> y = points.y, z = points.z;
-  const ProfileFactor parts[] = {Factor(y.first(1), z.first(1)), Factor(y.subspan(1, 2), z.subspan(1, 2)),
-                                 Factor(y.subspan(3), z.subspan(3))};
-  EXPECT_LT((Merged(parts) - Factor(y, z)).norm(), 1e-12 * Factor(y, z).norm());
+  for (const std::vector<size_t>& starts : {std::vector<size_t>{0}, {0, 1}, {0, 1, 3, 40}, {0, 1, 3, 10, 30, 31, 80}}) {
+    std::vector<ProfileFactor> parts;
+    for (size_t k = 0; k < starts.size(); ++k) {
+      const size_t count = (k + 1 < starts.size() ? starts[k + 1] : y.size()) - starts[k];
+      parts.push_back(Factor(y.subspan(starts[k], count), z.subspan(starts[k], count)));
+    }
+    EXPECT_LT((Merged(parts) - Factor(y, z)).norm(), 1e-12 * Factor(y, z).norm()) << parts.size() << " parts";
+  }
 }
 
 }  // namespace
