@@ -137,9 +137,11 @@ Profile CompressProfile(double alpha, std::span<const double> y, std::span<const
   return profile;
 }
 
+void Clean(RawScan* scan) { scan->off_line = SetAsideOffLine(&scan->profiles); }
+
 Result<RawScan> ReadCleanScan(const ScanDeclaration& scan, double sense) {
   SCANCAL_ASSIGN_OR_RETURN(RawScan raw, ReadRawScan(scan, sense));
-  raw.off_line = SetAsideOffLine(&raw.profiles);
+  Clean(&raw);
   return raw;
 }
 
