@@ -113,6 +113,7 @@ Json ToJson(const Calibration& c) {
         {"F", c.lack_of_fit.F}, {"dof1", c.lack_of_fit.dof1}, {"dof2", c.lack_of_fit.dof2}, {"p", c.lack_of_fit.p}};
   json["condition"] = Number(c.condition);
   json["weakest"] = c.weakest;
+  json["neighbours"] = Number(c.neighbours);
   json["misfits"] = MisfitsJson(c);
   json["budget"] = BudgetJson(c);
   json["compare"] = Json::array();

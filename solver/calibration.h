@@ -81,6 +81,7 @@ struct Calibration {
   double sigma = 0;  // rms residual by degrees of freedom, mm
   LackOfFit lack_of_fit;
   std::vector<MisfitTest> misfits;  // of a weighted fit
+  double neighbours = 0;            // correlation of the residuals of neighbouring views
   double condition = 0;
   std::map<std::string, double> weakest;  // components of the least determined direction
   std::vector<BudgetLine> budget;

@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include "solver/uncertainty/coverage.h"
+#include "solver/uncertainty/neighbours.h"
 
 namespace scancal {
 namespace {
 
-constexpr double kSuspicious = 1e-3;     // a warning that a right data set raises once in a thousand
-constexpr double kContradiction = 1e-6;  // no chance any more
-constexpr double kNearly = 0.8;          // of the strongest
-constexpr double kFarFromPrior = 3;      // of the prior's u
+constexpr double kSuspicious = 1e-3;       // a warning that a right data set raises once in a thousand
+constexpr double kContradiction = 1e-6;    // no chance any more
+constexpr double kNearly = 0.8;            // of the strongest
+constexpr double kFarFromIndependent = 4;  // standard errors
+constexpr double kLeastCorrelation = 0.1;  // makes u too small by a tenth
+constexpr double kFarFromPrior = 3;        // of the prior's u
 
 std::string LeastDetermined(const std::map<std::string, double>& direction) {
   const auto worst = std::max_element(direction.begin(), direction.end(), [](const auto& a, const auto& b) {
@@ -73,6 +76,17 @@ void JudgeMisfits(Calibration* result) {
           others.empty() ? "" : " (also seen as " + others + ")"));
 }
 
+void JudgeNeighbours(const Solution& solution, Calibration* result) {
+  const Neighbours neighbours = CorrelationOfNeighbours(solution.problem, solution.fit.estimate, solution.linear);
+  result->neighbours = neighbours.correlation;
+  const double significant = kFarFromIndependent / std::sqrt(std::max(1.0, neighbours.pairs));
+  if (neighbours.correlation < std::max(significant, kLeastCorrelation)) return;
+  result->warnings.push_back(fmt::format(
+      "neighbouring views are correlated ({:.2g}), but count as independent: as far as that is neither form "
+      "nor a wrong model, u is too small by a factor of about {:.2g}",
+      neighbours.correlation, std::sqrt((1 + neighbours.correlation) / (1 - neighbours.correlation))));
+}
+
 void JudgeVariances(const Variances& variances, Calibration* result) {
   for (const Exceeded& exceeded : variances.exceeded)
     result->warnings.push_back(
@@ -110,6 +124,7 @@ void Judge(const Solution& solution, const Jackknife& jackknife, double clustere
   if (solution.variances) {
     JudgeMisfits(calibration);
     JudgeVariances(*solution.variances, calibration);
+    JudgeNeighbours(solution, calibration);
   } else {
     JudgeFit(calibration->lack_of_fit, calibration);
   }

@@ -113,6 +113,28 @@ TYPED_TEST_P(ModelContract, CompressionKeepsCostGradientEstimateAndCovariance) {
   EXPECT_LT((InverseInformation(la) - InverseInformation(lb)).norm(), 1e-9 * InverseInformation(lb).norm());
 }
 
+// What the residuals say of the noise, and the fit that is weighted with it, from rows that stand for many points.
+TYPED_TEST_P(ModelContract, CompressionKeepsVariancesAndTheWeightedFit) {
+  ContractOptions options;
+  Solution solutions[2];
+  for (const bool compressed : {true, false}) {
+    options.compressed = compressed;
+    ContractData data = TypeParam::Make(options);
+    solutions[compressed] = SolveWeighted(Solve(std::move(data.problem), data.start), 1e-9);
+  }
+  const Solution &few = solutions[1], &all = solutions[0];
+  ASSERT_EQ(few.variances->sources, all.variances->sources);
+  for (Eigen::Index k = 0; k < few.variances->variance.size(); ++k) {
+    const double error = std::sqrt(all.variances->covariance(k, k));
+    EXPECT_NEAR(few.variances->variance[k], all.variances->variance[k], 1e-3 * error) << few.variances->sources[k];
+    EXPECT_NEAR(std::sqrt(few.variances->covariance(k, k)), error, 1e-3 * error);
+  }
+  const Eigen::MatrixXd covariance = InverseInformation(all.linear);
+  EXPECT_LT((InverseInformation(few.linear) - covariance).norm(), 1e-3 * covariance.norm());
+  for (Eigen::Index k = 0; k < covariance.rows(); ++k)
+    EXPECT_NEAR(few.fit.estimate.system[k], all.fit.estimate.system[k], 1e-3 * std::sqrt(covariance(k, k)));
+}
+
 // Noise, everything that is considered, and the priors, all drawn anew: the estimates must scatter as K V K' says.
 TYPED_TEST_P(ModelContract, UncertaintyByPropagationEqualsItsMonteCarlo) {
   constexpr int kTrials = 600;
@@ -173,7 +195,8 @@ TYPED_TEST_P(ModelContract, TheOrderOfPointsViewsAndTargetsDoesNotMatter) {
 
 REGISTER_TYPED_TEST_SUITE_P(ModelContract, RecoversTheTruthFromNoiselessData, LoadsWhatItSimulates,
                             AutodiffEqualsCentralDifferences, CompressionKeepsCostGradientEstimateAndCovariance,
-                            UncertaintyByPropagationEqualsItsMonteCarlo, TheNoiseComesBack, RankIsTheSameOffTheSolution,
-                            RefusesASceneOfDeficientRankByName, TheOrderOfPointsViewsAndTargetsDoesNotMatter);
+                            CompressionKeepsVariancesAndTheWeightedFit, UncertaintyByPropagationEqualsItsMonteCarlo,
+                            TheNoiseComesBack, RankIsTheSameOffTheSolution, RefusesASceneOfDeficientRankByName,
+                            TheOrderOfPointsViewsAndTargetsDoesNotMatter);
 
 }  // namespace scancal

@@ -1,10 +1,11 @@
 #include "solver/uncertainty/variances.h"
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include "solver/affine.h"
 #include "solver/linearize.h"
+#include "solver/uncertainty/restricted_likelihood.h"
 #include "solver/weigh.h"
 
 namespace scancal {
@@ -18,12 +19,6 @@ constexpr double kLargestStep = 25;      // a variance changes by no more than t
 constexpr double kAtZero = 1e-4;         // of a standard error: a variance below this and falling is zero
 constexpr double kConfounded = 1e-8;     // of the largest eigenvalue of the scaled information
 constexpr double kMoreThanDeclared = 3;  // standard errors
-
-// The unit effects of every unknown source on one view's rows, side by side; they hardly change with the estimate.
-struct ViewEffects {
-  std::vector<Eigen::MatrixXd> of_source;  // rows x instances, for u = 1
-  std::vector<bool> of_points;             // acts on single points
-};
 
 struct Sources {
   std::vector<std::string> names;
@@ -65,96 +60,6 @@ ViewEffects EffectsOn(const Block& view, const Problem& problem, const Sources& 
   return effects;
 }
 
-// X' V_k X for an orthonormal basis X of the whitened Jacobian: of one target's own part, of the system's, and across.
-struct Projected {
-  std::vector<Eigen::MatrixXd> own, across;  // per target
-  Eigen::MatrixXd system;
-  double TraceOfProduct(const Projected& other) const {
-    double trace = system.cwiseProduct(other.system).sum();
-    for (size_t t = 0; t < own.size(); ++t)
-      trace += own[t].cwiseProduct(other.own[t]).sum() + 2 * across[t].cwiseProduct(other.across[t]).sum();
-    return trace;
-  }
-};
-
-// Score and expected information of the unknown variances.
-class Likelihood {
- public:
-  Likelihood(Eigen::Index sources, size_t targets, Eigen::Index own, Eigen::Index system)
-      : score(Eigen::VectorXd::Zero(sources)),
-        information(Eigen::MatrixXd::Zero(sources, sources)),
-        average(Eigen::MatrixXd::Zero(sources, sources)),
-        own_pull_(targets, Eigen::MatrixXd::Zero(own, sources)),
-        system_pull_(Eigen::MatrixXd::Zero(system, sources)),
-        projected_(sources, {std::vector<Eigen::MatrixXd>(targets, Eigen::MatrixXd::Zero(own, own)),
-                             std::vector<Eigen::MatrixXd>(targets, Eigen::MatrixXd::Zero(own, system)),
-                             Eigen::MatrixXd::Zero(system, system)}) {}
-
-  // r: whitened and free of X; point_variance: what one row of the view has from all its point noise.
-  void Add(size_t target, const Block& view, const ViewEffects& effects, const Eigen::VectorXd& r,
-           const Eigen::MatrixXd& own, const Eigen::MatrixXd& system, double point_variance) {
-    const auto n = score.size();
-    const double more = view.rows->count() - static_cast<double>(r.size());
-    std::vector<Eigen::MatrixXd> f(n), of_own(n), of_system(n);
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(n);  // of the point noise per row
-    Eigen::MatrixXd pulled(r.size(), n);             // V_k P r, whitened
-    for (Eigen::Index k = 0; k < n; ++k) {
-      f[k] = view.Weighted(effects.of_source[k]);
-      of_own[k] = f[k].transpose() * own;
-      of_system[k] = f[k].transpose() * system;
-      if (effects.of_points[k])
-        row[k] = effects.of_source[k].squaredNorm() / static_cast<double>(r.size()) / point_variance;
-      const Eigen::VectorXd on_r = f[k].transpose() * r;
-      pulled.col(k) = f[k] * on_r;
-      score[k] += 0.5 * (on_r.squaredNorm() - f[k].squaredNorm() - more * row[k]);
-      projected_[k].own[target] += of_own[k].transpose() * of_own[k];
-      projected_[k].across[target] += of_own[k].transpose() * of_system[k];
-      projected_[k].system += of_system[k].transpose() * of_system[k];
-    }
-    own_pull_[target] += own.transpose() * pulled;
-    system_pull_ += system.transpose() * pulled;
-    average += 0.5 * pulled.transpose() * pulled;
-    for (Eigen::Index k = 0; k < n; ++k) {
-      for (Eigen::Index l = 0; l <= k; ++l) {
-        const Eigen::MatrixXd between = f[k].transpose() * f[l];
-        const double through = (of_own[k].transpose() * between).cwiseProduct(of_own[l].transpose()).sum() +
-                               (of_system[k].transpose() * between).cwiseProduct(of_system[l].transpose()).sum();
-        information(k, l) += 0.5 * (between.squaredNorm() - 2 * through + more * row[k] * row[l]);
-      }
-    }
-  }
-
-  void Finish() {
-    average -= 0.5 * system_pull_.transpose() * system_pull_;
-    for (const Eigen::MatrixXd& pull : own_pull_) average -= 0.5 * pull.transpose() * pull;
-    for (Eigen::Index k = 0; k < score.size(); ++k) {
-      double trace = projected_[k].system.trace();
-      for (const Eigen::MatrixXd& own : projected_[k].own) trace += own.trace();
-      score[k] += 0.5 * trace;
-      for (Eigen::Index l = 0; l <= k; ++l) {
-        information(k, l) += 0.5 * projected_[k].TraceOfProduct(projected_[l]);
-        information(l, k) = information(k, l);
-      }
-    }
-  }
-
-  Eigen::VectorXd score;
-  Eigen::MatrixXd information;  // expected
-  Eigen::MatrixXd average;      // of expected and observed: r'P V_k P V_l P r / 2 (Gilmour, Thompson and Cullis 1995)
-
-  // For the last steps: the observed information where it is positive definite, else the average.
-  Eigen::MatrixXd Curvature() const {
-    const Eigen::MatrixXd observed = 2 * average - information;
-    const bool positive = Eigen::LLT<Eigen::MatrixXd>(observed).info() == Eigen::Success;
-    return positive ? observed : average;
-  }
-
- private:
-  std::vector<Eigen::MatrixXd> own_pull_;  // X' V_k P r
-  Eigen::MatrixXd system_pull_;
-  std::vector<Projected> projected_;
-};
-
 // Pseudo-inverse in units of the standard errors: what the data cannot tell apart stays as it is.
 Eigen::MatrixXd Inverse(const Eigen::MatrixXd& information) {
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -165,26 +70,39 @@ Eigen::MatrixXd Inverse(const Eigen::MatrixXd& information) {
          scale.asDiagonal();
 }
 
-// One Fisher step, the variances kept positive: those at zero stay there while the others move. Returns the largest
-// move in standard errors.
-double Step(const Likelihood& likelihood, const Eigen::MatrixXd& information, const Eigen::VectorXd& least,
+// One step to the maximum of score'm - m'(information)m / 2, the variances kept positive: those that would fall or rise
+// too far go as far as they may, the others make the best of it; those at zero stay there. Returns the largest move in
+// standard errors.
+double Step(const RestrictedLikelihood& likelihood, const Eigen::MatrixXd& information, const Eigen::VectorXd& least,
             Eigen::VectorXd* variance) {
   const auto n = variance->size();
-  const Eigen::VectorXd error = likelihood.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd error = likelihood.information().diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd lowest = (*variance / kLargestStep).cwiseMax(least) - *variance,
+                        highest = *variance * (kLargestStep - 1);
   std::vector<Eigen::Index> free;
   for (Eigen::Index k = 0; k < n; ++k)
-    if (likelihood.score[k] > 0 || (*variance)[k] > kAtZero * error[k]) free.push_back(k);
-  if (free.empty()) return 0;
-  const Eigen::VectorXd move = Inverse(information(free, free)) * Eigen::VectorXd(likelihood.score(free));
-  double largest = 0;
-  for (size_t i = 0; i < free.size(); ++i) {
-    double& v = (*variance)[free[i]];
-    const double next = std::max(
-        least[free[i]], std::clamp(v + move[static_cast<Eigen::Index>(i)], v / kLargestStep, v * kLargestStep));
-    largest = std::max(largest, std::abs(next - v) / error[free[i]]);
-    v = next;
+    if (likelihood.score()[k] > 0 || (*variance)[k] > kAtZero * error[k]) free.push_back(k);
+  Eigen::VectorXd move = Eigen::VectorXd::Zero(n);
+  for (bool bounded = true; bounded && !free.empty();) {
+    const Eigen::VectorXd score = likelihood.score() - information * move;  // where the bounded ones have gone
+    const Eigen::VectorXd best = Inverse(information(free, free)) * score(free);
+    bounded = false;
+    std::vector<Eigen::Index> left;
+    for (size_t i = 0; i < free.size(); ++i) {
+      const Eigen::Index k = free[i];
+      const double m = best[static_cast<Eigen::Index>(i)];
+      if (m >= lowest[k] && m <= highest[k]) {
+        left.push_back(k);
+        continue;
+      }
+      move[k] = std::clamp(m, lowest[k], highest[k]);
+      bounded = true;
+    }
+    if (!bounded) move(free) = best;
+    free = std::move(left);
   }
-  return largest;
+  *variance += move;
+  return move.cwiseAbs().cwiseQuotient(error).maxCoeff();
 }
 
 class Estimation {
@@ -209,10 +127,10 @@ class Estimation {
     result.converged = unknown_.size() == 0;
     const Eigen::VectorXd lowest = (kLowest * result.variance).cwiseMax(least_variance_);
     for (int step = 0; step < kMostSteps && !result.converged; ++step) {
-      const Likelihood likelihood = Evaluate();
-      result.covariance = Inverse(likelihood.information);
-      result.converged = Step(likelihood, step < kFisherSteps ? likelihood.information : likelihood.Curvature(), lowest,
-                              &result.variance) < kSettled;
+      const RestrictedLikelihood likelihood = Evaluate();
+      result.covariance = Inverse(likelihood.information());
+      result.converged = Step(likelihood, step < kFisherSteps ? likelihood.information() : likelihood.Curvature(),
+                              lowest, &result.variance) < kSettled;
       SetVariances(unknown_, result.variance, &problem_);
       Weigh(&problem_, at_);
     }
@@ -252,14 +170,14 @@ class Estimation {
   }
 
   // At the present variances; moves the estimate to their minimum.
-  Likelihood Evaluate() {
+  RestrictedLikelihood Evaluate() {
     const Linearization linear = Linearize(problem_, at_, Storey::kViews);
     const auto n = linear.factor.cols();
     const Eigen::MatrixXd to_basis =
         linear.factor.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
     const Estimate step = GaussNewtonStep(linear);
     const std::vector<int> noise = problem_.With({Scope::kPoint}, Role::kConsider);
-    Likelihood likelihood(unknown_.size(), problem_.targets.size(), linear.targets[0].q.cols(), n);
+    RestrictedLikelihood likelihood(unknown_.size(), problem_.targets.size(), linear.targets[0].q.cols(), n);
     size_t v = 0;
     for (size_t t = 0; t < problem_.targets.size(); ++t) {
       const LinearTarget& target = linear.targets[t];
@@ -294,12 +212,47 @@ class Estimation {
   std::vector<ViewEffects> effects_;  // per view that is no prior
 };
 
+// On the affine problem; then as the real one.
+Variances EstimateUnknown(Problem* problem, Estimate* at, double least) {
+  Problem affine = Affine(*problem, *at);
+  Variances result = Estimation(&affine, at, least).Run();
+  problem->quantities = std::move(affine.quantities);
+  return result;
+}
+
+Eigen::Index IndexOf(const std::string& source, const std::vector<std::string>& sources) {
+  return std::find(sources.begin(), sources.end(), source) - sources.begin();
+}
+
+// Of what is declared, those sources of which the data show significantly more: they become unknown, from where they
+// were declared.
+std::vector<std::string> ReleaseExceeded(Problem* problem, Estimate at, double least) {
+  Problem free = *problem;
+  std::vector<int> declared;
+  for (const int k : problem->With({Scope::kView, Scope::kPoint}, Role::kConsider)) {
+    if (!(problem->quantities[k].u > 0)) continue;
+    declared.push_back(k);
+    free.quantities[k].role = Role::kEstimate;
+  }
+  std::vector<std::string> larger;
+  if (declared.empty()) return larger;
+  const Variances told = EstimateUnknown(&free, &at, least);
+  for (const int k : declared) {
+    Quantity& quantity = problem->quantities[k];
+    const Eigen::Index i = IndexOf(quantity.Source(), told.sources);
+    const double more = told.variance[i] - quantity.u * quantity.u;
+    if (!(more > kMoreThanDeclared * std::sqrt(told.covariance(i, i)))) continue;
+    quantity.role = Role::kEstimate;
+    if (larger.empty() || larger.back() != quantity.Source()) larger.push_back(quantity.Source());
+  }
+  return larger;
+}
+
 }  // namespace
 
 double Variances::Dof(const std::string& source) const {
-  const auto found = std::find(sources.begin(), sources.end(), source);
-  if (found == sources.end()) return std::numeric_limits<double>::infinity();
-  const auto k = found - sources.begin();
+  const Eigen::Index k = IndexOf(source, sources);
+  if (k == std::ssize(sources)) return std::numeric_limits<double>::infinity();
   return 2 * variance[k] * variance[k] / covariance(k, k);
 }
 
@@ -310,32 +263,16 @@ double Variances::Dof(const Eigen::VectorXd& share, double total) const {
 }
 
 Variances EstimateVariances(Problem* problem, Estimate* at, double least) {
-  std::vector<int> declared;
-  for (const int k : problem->With({Scope::kView, Scope::kPoint}, Role::kConsider))
-    if (problem->quantities[k].u > 0) declared.push_back(k);
-  if (declared.empty()) return Estimation(problem, at, least).Run();
-
-  // What would the data say of the declared ones?
-  Problem free = *problem;
-  Estimate there = *at;
-  for (const int k : declared) free.quantities[k].role = Role::kEstimate;
-  const Variances told = Estimation(&free, &there, least).Run();
+  const std::vector<std::string> larger = ReleaseExceeded(problem, *at, least);
   std::vector<Exceeded> exceeded;
-  for (const int k : declared) {
-    Quantity& quantity = problem->quantities[k];
-    const auto i = std::find(told.sources.begin(), told.sources.end(), quantity.Source()) - told.sources.begin();
-    const double error = std::sqrt(told.covariance(i, i)), more = told.variance[i] - quantity.u * quantity.u;
-    if (!(more > kMoreThanDeclared * error)) continue;
-    quantity.role = Role::kEstimate;
-    if (exceeded.empty() || exceeded.back().source != quantity.Source())
-      exceeded.push_back({quantity.Source(), quantity.u, 0});
-  }
-  Variances result = Estimation(problem, at, least).Run();
-  for (Exceeded& each : exceeded) {
-    const auto i = std::find(result.sources.begin(), result.sources.end(), each.source) - result.sources.begin();
-    each.estimated = std::sqrt(result.variance[i]);
-  }
+  for (const std::string& source : larger)
+    for (const Quantity& quantity : problem->quantities)
+      if (quantity.Source() == source && (exceeded.empty() || exceeded.back().source != source))
+        exceeded.push_back({source, quantity.u, 0});
+  Variances result = EstimateUnknown(problem, at, least);
+  for (Exceeded& each : exceeded) each.estimated = std::sqrt(result.variance[IndexOf(each.source, result.sources)]);
   result.exceeded = std::move(exceeded);
+  Weigh(problem, *at);
   return result;
 }
 

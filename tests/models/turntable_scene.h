@@ -47,6 +47,9 @@ inline std::vector<Turntable::Target> MakeTargets(std::vector<SimulatedPlacement
         view.alpha = profile.alpha;
         view.count = static_cast<double>(profile.y.size());
         for (size_t i = 0; i < profile.y.size(); ++i) view.points.push_back({1, profile.y[i], profile.z[i]});
+        const Eigen::Map<const Eigen::VectorXd> z(profile.z.data(), std::ssize(profile.z));
+        view.line.resize(z.size(), 2);
+        view.line << Eigen::VectorXd::Ones(z.size()), z.array() - z.mean();
       }
     }
     if (as.reversed) std::reverse(target.views.begin(), target.views.end());

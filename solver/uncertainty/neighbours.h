@@ -1,0 +1,15 @@
+// Are views independent of each other, as everything here counts them?
+#pragma once
+#include "solver/linearize.h"
+
+namespace scancal {
+
+// Correlation between neighbouring views of a target, pooled over targets and over everything of view scope: with z_v the
+// whitened residual of view v along the effect of such a quantity, sum z_v z_v+1 / sum z_v^2. Its standard error is
+// 1 / sqrt(pairs) if they are independent.
+struct Neighbours {
+  double correlation = 0, pairs = 0;
+};
+Neighbours CorrelationOfNeighbours(const Problem& problem, const Estimate& fit, const Linearization& linear);
+
+}  // namespace scancal
