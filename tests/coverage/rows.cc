@@ -9,7 +9,7 @@ constexpr double kDegree = std::numbers::pi / 180, kArcsecond = kDegree / 3600, 
 
 TurntableScene White() {
   TurntableScene scene;
-  scene.profiles = scene.points = 200;
+  scene.profiles = scene.points = 100;
   scene.sweep = 44 * kDegree;
   return scene;
 }
