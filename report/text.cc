@@ -9,6 +9,9 @@ namespace {
 
 std::string Shown(double number) { return number > 0 ? Significant(number, 2) : "-"; }
 
+// Degrees of freedom beyond counting: k no longer depends on them.
+std::string Dof(double dof) { return dof < 1e6 ? Count(std::floor(dof)) : "infinite"; }
+
 std::string Percent(double share) { return share < 0.0005 ? "0.0" : fmt::format("{:.1f}", 100 * share); }
 
 std::string Parameters(const Calibration& c) {
@@ -21,7 +24,7 @@ std::string Parameters(const Calibration& c) {
       continue;
     }
     table.Add({p.name, Concise(p.value, p.u), Name(p.unit), Shown(p.u), Shown(p.U), Significant(p.k, 3),
-               Count(std::floor(p.dof)), Shown(p.u_naive), Shown(p.u_clustered), Shown(p.u_jackknife)});
+               Dof(p.dof), Shown(p.u_naive), Shown(p.u_clustered), Shown(p.u_jackknife)});
   }
   return table.Text();
 }
@@ -50,7 +53,7 @@ std::string BudgetText(const Calibration& c) {
   TextTable table(header);
   for (const BudgetLine& line : c.budget) {
     std::vector<std::string> row = {line.source, std::string(1, line.type), Significant(line.u, 2), Name(line.unit),
-                                    Count(std::floor(line.dof))};
+                                    Dof(line.dof)};
     for (size_t k = 0; k < line.contribution.size(); ++k) {
       row.push_back(Significant(line.contribution[k], 2));
       row.push_back(Percent(line.share[k]));

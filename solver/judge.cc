@@ -25,7 +25,7 @@ std::string LeastDetermined(const std::map<std::string, double>& direction) {
 
 void JudgeJackknife(const Solution& solution, const Jackknife& jackknife, double clustered_dof, Calibration* result) {
   if (jackknife.estimates.rows() < 2 || clustered_dof < 1) return;
-  const ExpectedJackknife expected = ExpectLeaveOneTargetOut(solution.problem, solution.linear);
+  const ExpectedJackknife expected = ExpectLeaveOneTargetOut(solution.problem, solution.fit.estimate, solution.linear);
   for (size_t k = 0; k < result->estimated.size(); ++k) {
     const auto e = static_cast<Eigen::Index>(k);
     // What no target moves, because only its prior or a declaration holds it, is rounding over rounding.
@@ -79,6 +79,7 @@ void JudgeMisfits(Calibration* result) {
 void JudgeNeighbours(const Solution& solution, Calibration* result) {
   const Neighbours neighbours = CorrelationOfNeighbours(solution.problem, solution.fit.estimate, solution.linear);
   result->neighbours = neighbours.correlation;
+  if (!solution.problem.With({Scope::kTarget}, Role::kConsider).empty()) return;  // that looks the same
   const double significant = kFarFromIndependent / std::sqrt(std::max(1.0, neighbours.pairs));
   if (neighbours.correlation < std::max(significant, kLeastCorrelation)) return;
   result->warnings.push_back(fmt::format(

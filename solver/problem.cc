@@ -69,8 +69,10 @@ void Target::MixNodes() {
   nodes.mix = factor.R();
 }
 
-void Problem::AddPriors() {
-  for (int k : With({Scope::kSystem, Scope::kTarget}, Role::kEstimate)) {
+void Problem::AddPriors() { AddPriors(With({Scope::kSystem, Scope::kTarget}, Role::kEstimate)); }
+
+void Problem::AddPriors(const std::vector<int>& of) {
+  for (const int k : of) {
     const Quantity& q = quantities[k];
     if (q.u <= 0) continue;
     const Block prior{std::make_shared<PriorRow>(k, q.value), InverseDeviation(q.u), {}, {}, "prior of " + q.Source()};
@@ -131,16 +133,20 @@ Estimate NominalStart(const Problem& problem) {
 }
 
 std::vector<double> Values(const Problem& problem, const Estimate& estimate, size_t target) {
-  std::vector<double> q(problem.quantities.size());
-  Eigen::Index of_system = 0, of_target = 0;
-  for (size_t k = 0; k < q.size(); ++k) {
-    const Quantity& quantity = problem.quantities[k];
-    q[k] = quantity.value;
-    if (quantity.role != Role::kEstimate) continue;
-    if (quantity.scope == Scope::kSystem) q[k] = estimate.system[of_system++];
-    if (quantity.scope == Scope::kTarget) q[k] = estimate.targets[target][of_target++];
-  }
+  std::vector<double> q;
+  for (const Quantity& quantity : problem.quantities) q.push_back(quantity.value);
+  const std::vector<int> system = problem.With({Scope::kSystem}, Role::kEstimate);
+  const std::vector<int> own = problem.With({Scope::kTarget}, Role::kEstimate);
+  for (size_t k = 0; k < system.size(); ++k) q[system[k]] = estimate.system[static_cast<Eigen::Index>(k)];
+  for (size_t k = 0; k < own.size(); ++k) q[own[k]] = estimate.targets[target][static_cast<Eigen::Index>(k)];
   return q;
+}
+
+void SetValues(const Problem& problem, const std::vector<double>& values, size_t target, Estimate* estimate) {
+  const std::vector<int> system = problem.With({Scope::kSystem}, Role::kEstimate);
+  const std::vector<int> own = problem.With({Scope::kTarget}, Role::kEstimate);
+  for (size_t k = 0; k < system.size(); ++k) estimate->system[static_cast<Eigen::Index>(k)] = values[system[k]];
+  for (size_t k = 0; k < own.size(); ++k) estimate->targets[target][static_cast<Eigen::Index>(k)] = values[own[k]];
 }
 
 }  // namespace scancal

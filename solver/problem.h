@@ -83,7 +83,9 @@ struct Problem {
   std::vector<Target> targets;
   std::vector<Block> priors;  // of system quantities
 
-  void AddPriors();  // one row (q - value) / u for every estimated quantity with a prior; once the targets are in place
+  // One row (q - value) / u for every estimated quantity with a prior, or for these; once the targets are in place.
+  void AddPriors();
+  void AddPriors(const std::vector<int>& of);
   // All data rows divided by sigma, their common standard deviation; priors keep their own unit noise.
   void WeighEqually(double sigma);
   std::vector<int> With(std::initializer_list<Scope> scopes, Role role) const;
@@ -101,5 +103,7 @@ struct Estimate {
 Estimate NominalStart(const Problem& problem);  // every quantity at its value
 // One value per quantity as target t sees it: nominal, with the estimates in place.
 std::vector<double> Values(const Problem& problem, const Estimate& estimate, size_t target);
+// The other way: takes what is estimated of the system and of target t from `values`.
+void SetValues(const Problem& problem, const std::vector<double>& values, size_t target, Estimate* estimate);
 
 }  // namespace scancal

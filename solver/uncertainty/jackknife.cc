@@ -2,8 +2,45 @@
 #include <Eigen/LU>
 #include <cmath>
 #include "solver/uncertainty/covariance.h"
+#include "solver/weigh.h"
 
 namespace scancal {
+namespace {
+
+// J~' b u of everything that was considered: of target scope per target, system x quantities; of system scope stacked
+// over the targets, (system targets) x quantities.
+struct Considered {
+  std::vector<Eigen::MatrixXd> own;
+  Eigen::MatrixXd common;
+};
+
+Considered ConsideredScores(const Problem& problem, const Estimate& fit, const Linearization& linear) {
+  const std::vector<int> of_target = problem.With({Scope::kTarget}, Role::kConsider);
+  const std::vector<int> of_system = problem.With({Scope::kSystem}, Role::kConsider);
+  std::vector<int> seeds = of_target;
+  seeds.insert(seeds.end(), of_system.begin(), of_system.end());
+  Eigen::VectorXd u(std::ssize(seeds));
+  for (Eigen::Index k = 0; k < u.size(); ++k) u[k] = problem.quantities[seeds[k]].u;
+  const auto n = linear.factor.cols(), m = std::ssize(problem.targets);
+  Considered result{{}, Eigen::MatrixXd::Zero(n * m, std::ssize(of_system))};
+  for (std::ptrdiff_t t = 0; t < m; ++t) {
+    const LinearTarget& target = linear.targets[t];
+    const std::vector<double> values = Values(problem, fit, static_cast<size_t>(t));
+    Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(n, u.size());
+    for (size_t v = 0; v < problem.targets[t].views.size() && u.size() > 0; ++v) {
+      const Block& view = problem.targets[t].views[v];
+      if (!view.prior.empty()) continue;
+      scores += target.system_left.middleRows(target.first[v], view.size()).transpose() *
+                view.Weighted(RawDerivatives(view, values, seeds));
+    }
+    scores *= u.asDiagonal();
+    result.own.push_back(scores.leftCols(std::ssize(of_target)));
+    result.common.middleRows(n * t, n) = scores.rightCols(std::ssize(of_system));
+  }
+  return result;
+}
+
+}  // namespace
 
 Jackknife LeaveOneTargetOut(const Problem& problem, const Fit& fit) {
   Jackknife result;
@@ -24,7 +61,8 @@ Jackknife LeaveOneTargetOut(const Problem& problem, const Fit& fit) {
   return result;
 }
 
-ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Linearization& linear) {
+ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate& fit, const Linearization& linear) {
+  const Considered considered = ConsideredScores(problem, fit, linear);
   const std::vector<TargetScores> scores = ScoresByTarget(problem, linear);
   const Eigen::MatrixXd inverse = InverseInformation(linear);
   const auto n = inverse.rows();
@@ -50,8 +88,11 @@ ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Lineariz
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(rows.rows(), rows.rows());
     for (size_t j = 0; j < m; ++j) {
       const auto block = rows.middleCols(static_cast<Eigen::Index>(j) * n, n);
-      covariance += block * scores[j].meat * block.transpose();
+      const Eigen::MatrixXd of_own = block * considered.own[j];
+      covariance += block * scores[j].meat * block.transpose() + of_own * of_own.transpose();
     }
+    const Eigen::MatrixXd of_all = rows * considered.common;
+    covariance += of_all * of_all.transpose();
     expected.variance[k] = covariance.trace() * static_cast<double>(m - 1) / static_cast<double>(m);
     expected.dof[k] = std::pow(covariance.trace(), 2) / covariance.squaredNorm();
   }

@@ -17,11 +17,11 @@ Jackknife LeaveOneTargetOut(const Problem& problem, const Fit& fit);
 // What the variances of the jackknife would be on average if views were independent, as the clustered covariance
 // supposes. Not that covariance itself: few targets, each needed by the others, scatter more. To first order, leaving
 // target i out moves the fit by (H - H_i)^-1 s_i, where s_i = s_i0 - H_i H^-1 sum_j s_j0 is its score at the fit and
-// s_j0 has the covariance of its clusters.
+// s_j0 has the covariance of its clusters and of what was considered: of target scope its own, of system scope common.
 struct ExpectedJackknife {
   Eigen::VectorXd variance;  // per system quantity
   Eigen::VectorXd dof;       // of a chi-squared with the same mean and spread (Satterthwaite); at most targets - 1
 };
-ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Linearization& linear);
+ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate& fit, const Linearization& linear);
 
 }  // namespace scancal

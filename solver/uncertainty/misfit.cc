@@ -1,7 +1,7 @@
 #include "solver/uncertainty/misfit.h"
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include "solver/uncertainty/coverage.h"
@@ -35,93 +35,89 @@ std::vector<Source> Testable(const Problem& problem) {
   return sources;
 }
 
-// Weighted columns of all instances of a source, target by target: rows of target t in columns that are its own, or
-// everybody's where the system shares them. Free of what is estimated: B - X X'B.
-class Columns {
- public:
-  Columns(const Problem& problem, const Estimate& fit, const Linearization& linear, const Source& source)
-      : linear_(linear), shared_(source.scope == Scope::kSystem), members_(std::ssize(source.quantities)) {
-    const auto targets = std::ssize(problem.targets);
-    const auto n = linear.factor.cols();
-    scores_.setZero(n, instances(targets));
-    for (std::ptrdiff_t t = 0; t < targets; ++t) {
-      const LinearTarget& target = linear.targets[t];
-      Eigen::MatrixXd b = Eigen::MatrixXd::Zero(target.r.size(), members_);
-      const std::vector<double> values = Values(problem, fit, static_cast<size_t>(t));
-      for (size_t v = 0; v < problem.targets[t].views.size(); ++v) {
-        const Block& view = problem.targets[t].views[v];
-        if (view.prior.empty())
-          b.middleRows(target.first[v], target.first[v + 1] - target.first[v]) =
-              view.Weighted(RawDerivatives(view, values, source.quantities));
-      }
-      length_ = std::max(length_, b.colwise().norm().maxCoeff());
-      b -= target.q * (target.q.transpose() * b);
-      scores_.middleCols(First(t), members_) += target.system_left.transpose() * b;
-      of_target_.push_back(std::move(b));
-    }
-    const auto upper = linear.factor.triangularView<Eigen::Upper>();
-    moves_ = -upper.solve(upper.transpose().solve(scores_));
-    for (std::ptrdiff_t t = 0; t < std::ssize(linear.targets); ++t) left_.push_back(Left(t));
-  }
-
-  Eigen::Index instances() const { return moves_.cols(); }
-  const Eigen::MatrixXd& moves() const { return moves_; }  // system x instances: dx / dq
-  double length() const { return length_; }
-  // R of all columns and of -r: |R (m, 1)| = |r + B m|.
-  Eigen::MatrixXd Triangle() const {
-    Eigen::Index rows = 0;
-    for (const Eigen::MatrixXd& left : left_) rows += left.rows();
-    Eigen::MatrixXd stacked(rows, instances() + 1);
-    Eigen::Index at = 0;
-    for (size_t t = 0; t < left_.size(); ++t) {
-      stacked.middleRows(at, left_[t].rows()) << left_[t], linear_.targets[t].r;
-      at += left_[t].rows();
-    }
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
-    const Eigen::Index n = std::min(rows, stacked.cols());
-    Eigen::MatrixXd triangle = Eigen::MatrixXd::Zero(stacked.cols(), stacked.cols());
-    triangle.topRows(n) = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
-    return triangle;
-  }
-
- private:
-  Eigen::Index instances(std::ptrdiff_t targets) const { return shared_ ? members_ : members_ * targets; }
-  Eigen::Index First(std::ptrdiff_t target) const { return shared_ ? 0 : members_ * target; }
-  // Rows of one target, all instances: its own columns, less what the system takes up of everybody's.
-  Eigen::MatrixXd Left(std::ptrdiff_t target) const {
-    const LinearTarget& rows = linear_.targets[target];
-    if (rows.r.size() == 0) return Eigen::MatrixXd(0, instances());
-    Eigen::MatrixXd left = rows.system_left * moves_;
-    if (target < std::ssize(of_target_)) left.middleCols(First(target), members_) += of_target_[target];
-    return left;
-  }
-
-  const Linearization& linear_;
-  bool shared_;
-  Eigen::Index members_;
-  double length_ = 0;
-  std::vector<Eigen::MatrixXd> of_target_, left_;
-  Eigen::MatrixXd scores_, moves_;
+// All instances of a source as columns over all rows, weighted, without what the estimated quantities explain: B - X
+// X'B. One column a quantity where the system shares it, else one for every target.
+struct Columns {
+  Eigen::MatrixXd left;   // rows x instances
+  Eigen::MatrixXd moves;  // system x instances: d estimate / d q
+  double length = 0;      // of the longest column before
 };
 
-// The directions of m that the residuals see: m = directions * c, c independent with `deviation`, and its values.
+Columns ColumnsOf(const Problem& problem, const Estimate& fit, const Linearization& linear, const Source& source) {
+  const auto targets = std::ssize(problem.targets), members = std::ssize(source.quantities);
+  const bool shared = source.scope == Scope::kSystem;
+  const auto first_instance = [&](std::ptrdiff_t t) { return shared ? 0 : members * t; };
+  Columns columns;
+  Eigen::Index rows = 0;
+  for (const LinearTarget& target : linear.targets) rows += target.r.size();
+  columns.left.setZero(rows, shared ? members : members * targets);
+  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(linear.factor.cols(), columns.left.cols());
+  Eigen::Index at = 0;
+  for (std::ptrdiff_t t = 0; t < targets; ++t) {
+    const LinearTarget& target = linear.targets[t];
+    const std::vector<double> values = Values(problem, fit, static_cast<size_t>(t));
+    auto b = columns.left.block(at, first_instance(t), target.r.size(), members);
+    for (size_t v = 0; v < problem.targets[t].views.size(); ++v) {
+      const Block& view = problem.targets[t].views[v];
+      if (view.prior.empty())
+        b.middleRows(target.first[v], target.first[v + 1] - target.first[v]) =
+            view.Weighted(RawDerivatives(view, values, source.quantities));
+    }
+    columns.length = std::max(columns.length, b.colwise().norm().maxCoeff());
+    b -= target.q * (target.q.transpose() * b).eval();
+    scores.middleCols(first_instance(t), members) += target.system_left.transpose() * b;
+    at += target.r.size();
+  }
+  const auto upper = linear.factor.triangularView<Eigen::Upper>();
+  columns.moves = -upper.solve(upper.transpose().solve(scores));
+  at = 0;
+  for (const LinearTarget& target : linear.targets) {
+    if (target.r.size() > 0) columns.left.middleRows(at, target.r.size()) += target.system_left * columns.moves;
+    at += target.r.size();
+  }
+  return columns;
+}
+
+Eigen::VectorXd Residuals(const Linearization& linear) {
+  Eigen::Index rows = 0;
+  for (const LinearTarget& target : linear.targets) rows += target.r.size();
+  Eigen::VectorXd r(rows);
+  Eigen::Index at = 0;
+  for (const LinearTarget& target : linear.targets) {
+    r.segment(at, target.r.size()) = target.r;
+    at += target.r.size();
+  }
+  return r;
+}
+
+// What the residuals see of the instances m: m = directions * value, and the covariance of `value` from the noise and
+// from everything that was considered.
 struct Seen {
   Eigen::MatrixXd directions;
-  Eigen::VectorXd value, variance;  // of c
+  Eigen::VectorXd value;
+  Eigen::MatrixXd covariance;
 };
 
-Seen See(const Columns& columns) {
-  const Eigen::MatrixXd triangle = columns.Triangle();
-  const Eigen::Index n = columns.instances();
-  const Eigen::MatrixXd r = triangle.topLeftCorner(n, n);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+Seen See(const Columns& columns, const Eigen::VectorXd& r, const Eigen::MatrixXd& considered) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns.left);
+  const Eigen::Index n = columns.left.cols();
+  const Eigen::MatrixXd triangle = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Index rank = 0;
-  while (rank < n && svd.singularValues()[rank] > kVisible * columns.length()) ++rank;
+  while (rank < n && svd.singularValues()[rank] > kVisible * columns.length) ++rank;
+  const Eigen::VectorXd inverse = svd.singularValues().head(rank).cwiseInverse();
+  const auto fitted = [&](const Eigen::MatrixXd& to) -> Eigen::MatrixXd {
+    const Eigen::MatrixXd in_basis = qr.householderQ().adjoint() * to;
+    return -(inverse.asDiagonal() * svd.matrixU().leftCols(rank).transpose() * in_basis.topRows(n));
+  };
   Seen seen;
   seen.directions = svd.matrixV().leftCols(rank);
-  const Eigen::ArrayXd singular = svd.singularValues().head(rank).array();
-  seen.value = -((svd.matrixU().transpose() * triangle.topRightCorner(n, 1)).col(0).head(rank).array() / singular);
-  seen.variance = singular.square().inverse();
+  seen.value = fitted(r);
+  seen.covariance = inverse.cwiseAbs2().asDiagonal();
+  if (considered.cols() > 0 && rank > 0) {
+    const Eigen::MatrixXd of_considered = fitted(considered);
+    seen.covariance += of_considered * of_considered.transpose();
+  }
   return seen;
 }
 
@@ -131,30 +127,40 @@ std::vector<Misfit> TestMisfits(const Problem& problem, const Estimate& fit, con
                                 double noise_dof) {
   std::vector<Misfit> misfits;
   if (!(noise_dof >= 1)) return misfits;
-  for (const Source& source : Testable(problem)) {
-    const Columns columns(problem, fit, linear, source);
-    if (!(columns.length() > 0)) continue;
-    const Seen seen = See(columns);
-    if (seen.value.size() == 0) continue;
+  const Eigen::VectorXd r = Residuals(linear);
+  const std::vector<Source> sources = Testable(problem);
+  std::vector<Columns> columns;
+  Eigen::MatrixXd considered(r.size(), 0);  // all instances, times their u
+  for (const Source& source : sources) {
+    columns.push_back(ColumnsOf(problem, fit, linear, source));
     const Quantity& quantity = problem.quantities[source.quantities[0]];
-    const double declared = quantity.role == Role::kConsider ? quantity.u * quantity.u : 0;
+    if (quantity.role != Role::kConsider) continue;
+    const Eigen::Index before = considered.cols(), more = columns.back().left.cols();
+    considered.conservativeResize(Eigen::NoChange, before + more);
+    considered.rightCols(more) = columns.back().left * quantity.u;
+  }
+  for (size_t s = 0; s < sources.size(); ++s) {
+    if (!(columns[s].length > 0) || columns[s].left.cols() > r.size()) continue;
+    const Seen seen = See(columns[s], r, considered);
+    if (seen.value.size() == 0) continue;
+    const Quantity& quantity = problem.quantities[sources[s].quantities[0]];
     Misfit& misfit = misfits.emplace_back();
-    misfit.source = source.name;
-    misfit.considered = declared > 0;
+    misfit.source = sources[s].name;
+    misfit.considered = quantity.role == Role::kConsider;
     misfit.unit = quantity.unit;
     misfit.dof1 = static_cast<double>(seen.value.size());
     misfit.dof2 = noise_dof;
-    const Eigen::ArrayXd weights = (seen.variance.array() + declared).inverse();
-    misfit.F = (seen.value.array().square() * weights).sum() / misfit.dof1;
+    const Eigen::LLT<Eigen::MatrixXd> covariance(seen.covariance);
+    misfit.F = seen.value.dot(covariance.solve(seen.value)) / misfit.dof1;
     misfit.p = FUpperTail(misfit.F, misfit.dof1, misfit.dof2);
-    if (columns.instances() == 1) {
+    if (columns[s].left.cols() == 1) {
       misfit.size = seen.value[0] * seen.directions(0, 0);
-      misfit.moves = columns.moves().col(0) * misfit.size;
+      misfit.moves = columns[s].moves.col(0) * misfit.size;
     } else {
       // Method of moments: the mean square that noise and declaration leave unexplained, equal for all instances.
-      const double unexplained = std::max(0.0, (misfit.F - 1) * misfit.dof1 / weights.sum());
-      misfit.size = std::sqrt(unexplained);
-      misfit.moves = columns.moves().rowwise().norm() * misfit.size;
+      const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(seen.value.size(), seen.value.size());
+      misfit.size = std::sqrt(std::max(0.0, (misfit.F - 1) * misfit.dof1 / covariance.solve(identity).trace()));
+      misfit.moves = columns[s].moves.rowwise().norm() * misfit.size;
     }
   }
   const double tests = static_cast<double>(misfits.size());

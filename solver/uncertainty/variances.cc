@@ -212,11 +212,18 @@ class Estimation {
   std::vector<ViewEffects> effects_;  // per view that is no prior
 };
 
-// On the affine problem; then as the real one.
+// On the affine problem, in which what is considered is estimated with its u as prior: or it would count as noise.
 Variances EstimateUnknown(Problem* problem, Estimate* at, double least) {
-  Problem affine = Affine(*problem, *at);
-  Variances result = Estimation(&affine, at, least).Run();
-  problem->quantities = std::move(affine.quantities);
+  Problem free = *problem;
+  const std::vector<int> considered = problem->With({Scope::kSystem, Scope::kTarget}, Role::kConsider);
+  for (const int k : considered) free.quantities[k].role = Role::kEstimate;
+  free.AddPriors(considered);
+  Estimate there = NominalStart(free);
+  for (size_t t = 0; t < problem->targets.size(); ++t) SetValues(free, Values(*problem, *at, t), t, &there);
+  Problem affine = Affine(free, there);
+  Variances result = Estimation(&affine, &there, least).Run();
+  for (const int k : problem->With({Scope::kView, Scope::kPoint}, Role::kEstimate))
+    problem->quantities[k] = affine.quantities[k];
   return result;
 }
 
