@@ -7,15 +7,32 @@
 
 namespace scancal::coverage {
 
-struct Oracle {             // of M, N; mm
-  Eigen::Vector2d sigma;    // standard deviation of its estimate
-  Eigen::Vector2d error;    // of its estimate from these data
+struct Guess {            // of M, N; mm
+  Eigen::Vector2d sigma;  // its standard deviation
+  Eigen::Vector2d error;  // from these data
 };
 
-// Generalised least squares of M, N and the planes with the true covariance of the profiles' lines: noise, what the
-// first-order autoregressive process adds to offset and slope of a profile, jitter. Linearised at the truth, to first order.
-// truth: what was simulated; seen: what reading left of it.
-Oracle AskOracle(const TurntableScene& scene, const std::vector<SimulatedPlacement>& truth,
-                 const std::vector<Placement>& seen);
+// Generalised least squares of M, N and the planes with the true covariance of the profiles' lines: noise, what a
+// first-order autoregressive process adds to offset and slope, jitter, and the form of each plate as random amplitudes
+// of the declared modes. Linearised at the truth. Of a form that is not made of the modes it knows no more than we.
+class Oracle {
+ public:
+  explicit Oracle(const TurntableScene& scene);
+  Guess Ask(const std::vector<Placement>& seen) const;  // what reading left of a data set of the scene
+
+ private:
+  struct Bend {  // of a profile, by every mode: offset + slope z, the least squares line through the form at its points
+    Eigen::RowVectorXd offset, slope;
+  };
+  struct Plate {
+    Eigen::Vector3d normal;
+    double distance;
+    std::vector<Bend> bends;  // per profile
+  };
+  std::vector<Bend> BendsOf(const Plate& plate, const std::vector<SimulatedProfile>& profiles) const;
+
+  TurntableScene scene_;
+  std::vector<Plate> plates_;
+};
 
 }  // namespace scancal::coverage

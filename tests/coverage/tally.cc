@@ -9,7 +9,9 @@ namespace {
 
 constexpr double kNormal = 1.959964;
 
-std::string Percent(const Eigen::Vector2d& share) { return fmt::format("{:.1f} / {:.1f}", 100 * share[0], 100 * share[1]); }
+std::string Percent(const Eigen::Vector2d& share) {
+  return fmt::format("{:.1f} / {:.1f}", 100 * share[0], 100 * share[1]);
+}
 
 std::string WithError(double share, double sets) {
   return fmt::format("{:.1f} ± {:.1f} %", 100 * share, 100 * std::sqrt(share * (1 - share) / sets));
@@ -45,20 +47,23 @@ Tally Count(const std::vector<Trial>& trials) {
 }
 
 bool Holds(const Row& row, const Tally& tally) {
-  return tally.stated.minCoeff() >= row.least && tally.stated.maxCoeff() <= row.most && tally.width.maxCoeff() <= row.widest;
+  return tally.stated.minCoeff() >= row.least && tally.stated.maxCoeff() <= row.most &&
+         tally.width.maxCoeff() <= row.widest;
 }
 
 void Table::Add(const Row& row, const Tally& tally) {
-  lines_.push_back({row.name, fmt::format("{:g}", tally.sets), WithError(tally.stated[0], tally.sets),
-                    WithError(tally.stated[1], tally.sets), Percent(tally.naive), Percent(tally.clustered),
-                    fmt::format("{:.3f} / {:.3f}", tally.width[0], tally.width[1]),
-                    fmt::format("{:.3f} / {:.3f} ± {:.3f}", tally.oracle[0], tally.oracle[1], std::sqrt(0.5 / tally.sets)),
-                    fmt::format("{:.1f}", 1000 * tally.unreliable), Wanted(row), Holds(row, tally) ? "yes" : "NO"});
+  lines_.push_back(
+      {row.name, fmt::format("{:g}", tally.sets), WithError(tally.stated[0], tally.sets),
+       WithError(tally.stated[1], tally.sets), Percent(tally.naive), Percent(tally.clustered),
+       fmt::format("{:.3f} / {:.3f}", tally.width[0], tally.width[1]),
+       fmt::format("{:.3f} / {:.3f} ± {:.3f}", tally.oracle[0], tally.oracle[1], std::sqrt(0.5 / tally.sets)),
+       fmt::format("{:.1f}", 1000 * tally.unreliable), Wanted(row), Holds(row, tally) ? "yes" : "NO"});
 }
 
 std::string Table::Markdown() const {
-  std::vector<std::vector<std::string>> cells = {{"scene", "sets", "M held", "N held", "naive M / N, %", "clustered M / N, %",
-                                                  "width M / N", "oracle M / N", "unreliable, ‰", "wanted", "holds"}};
+  std::vector<std::vector<std::string>> cells = {{"scene", "sets", "M held", "N held", "naive M / N, %",
+                                                  "clustered M / N, %", "width M / N", "oracle M / N", "unreliable, ‰",
+                                                  "wanted", "holds"}};
   cells.emplace_back(cells[0].size(), "---");
   cells.insert(cells.end(), lines_.begin(), lines_.end());
   std::string text;

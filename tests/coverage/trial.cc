@@ -40,7 +40,7 @@ Turntable Declared(const Row& row) {
 
 }  // namespace
 
-Trial Try(const Row& row, uint64_t seed) {
+Trial Try(const Row& row, const Oracle& oracle, uint64_t seed) {
   static const double k = CoverageFactor(0.95, std::numeric_limits<double>::infinity());
   TurntableScene scene = row.scene;
   scene.seed = seed;
@@ -53,7 +53,7 @@ Trial Try(const Row& row, uint64_t seed) {
     trial.unreliable.push_back(scanner.error().message);
     return trial;
   }
-  trial.oracle = AskOracle(scene, placements, (*scanner)->placements());
+  trial.oracle = oracle.Ask((*scanner)->placements());
   const Result<Calibration> result = (*scanner)->Calibrate({});
   if (!result.ok()) {
     trial.unreliable.push_back(result.error().message);
@@ -70,11 +70,12 @@ Trial Try(const Row& row, uint64_t seed) {
 }
 
 std::vector<Trial> TryAll(const Row& row, size_t number, size_t sets, int threads, const std::function<void()>& done) {
+  const Oracle oracle(row.scene);
   std::vector<Trial> trials(sets);
   std::atomic<size_t> next = 0;
   const auto work = [&] {
     for (size_t set = next++; set < sets; set = next++) {
-      trials[set] = Try(row, (static_cast<uint64_t>(number) << 32) + set);
+      trials[set] = Try(row, oracle, (static_cast<uint64_t>(number) << 32) + set);
       if (done) done();
     }
   };

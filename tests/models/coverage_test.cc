@@ -18,7 +18,9 @@ TEST_P(Coverage, StatedIntervalsHoldTheTruth) {
   small.scene.profiles = 40;
   small.scene.points = 30;
   const Tally tally = Count(TryAll(small, 1000, kSets, 2));
-  Table table; table.Add(small, tally); std::cerr << table.Markdown();
+  Table table;
+  table.Add(small, tally);
+  std::cerr << table.Markdown();
 }
 
 INSTANTIATE_TEST_SUITE_P(, Coverage, ::testing::Values("white", "jitter 20 arcsec", "line correlation 40 points"));
