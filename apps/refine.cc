@@ -4,7 +4,6 @@
 #include <filesystem>
 #include "apps/command.h"
 #include "apps/load.h"
-#include "io/hash.h"
 #include "io/json_file.h"
 #include "report/calibration_json.h"
 #include "report/text.h"
@@ -22,14 +21,14 @@ namespace {
 
 Result<Calibration> Refined(const std::vector<std::string>& arguments) {
   SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, LoadAndEcho(arguments));
-  SCANCAL_ASSIGN_OR_RETURN(Calibration calibration, scanner->Calibrate({FLAGS_residual, FLAGS_weights == "equal", FLAGS_max_iterations}));
-  for (const std::filesystem::path& file : scanner->Files()) {
-    SCANCAL_ASSIGN_OR_RETURN(const std::string sha256, Sha256(file));
-    calibration.inputs.push_back({file.filename().string(), sha256});
-  }
+  SCANCAL_ASSIGN_OR_RETURN(Calibration calibration,
+                           scanner->Calibrate({FLAGS_residual, FLAGS_weights == "equal", FLAGS_max_iterations}));
+  SCANCAL_ASSIGN_OR_RETURN(calibration.inputs, InputsOf(*scanner));
   calibration.command = CommandLine();
   calibration.version = SCANCAL_VERSION;
-  SCANCAL_RETURN_IF_ERROR(WriteJson(std::filesystem::path(FLAGS_out) / "calibration.json", ToJson(calibration)));
+  Json json = ToJson(calibration);
+  SCANCAL_ASSIGN_OR_RETURN(json["data"], scanner->Data());
+  SCANCAL_RETURN_IF_ERROR(WriteJson(std::filesystem::path(FLAGS_out) / "calibration.json", json));
   return calibration;
 }
 
@@ -48,7 +47,7 @@ int Run(const std::vector<std::string>& arguments) {
 const Command kRefineCommand = {
     "refine",
     "DATASET",
-    "calibrate: search, joint refinement, uncertainty; writes calibration.json",
+    "calibrate: search, joint refinement, uncertainty; writes calibration.json, which can stand for DATASET later",
     {{"out", "folder for calibration.json (default: the current one)"}, {"residual"}, {"weights"}, {"max_iterations"}},
     &Run};
 

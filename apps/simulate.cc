@@ -18,11 +18,15 @@ DEFINE_double(line_length, 200, "length of the laser line, mm");
 DEFINE_double(noise, 0.05, "standard deviation along depth, mm");
 DEFINE_double(line_correlation, 1, "integrated correlation length of the noise along the line, points; 1 is white");
 DEFINE_double(encoder_jitter, 0, "standard deviation of the angle, one error a profile, deg");
-DEFINE_double(form, 0, "smooth deviation of the plate, mm rms");
+DEFINE_double(form, 0, "smooth deviation of the plate over what the scan sees of it, mm rms");
+DEFINE_string(form_kind, "modes", "modes (Legendre products, as u assumes) or smooth (plane waves)");
+DEFINE_bool(one_plate, false, "the same form in every placement");
 DEFINE_double(outliers, 0, "share of points that are spikes, 0 to 1");
+DEFINE_double(background, 0, "share of every line that sees a wall 30 to 60 mm behind the plate, 0 to 1");
 DEFINE_double(missing, 0, "share of points without a return, 0 to 1");
 DEFINE_double(search_width_M, 20, "width of the search interval of M, mm; it is not centred on the truth");
 DEFINE_double(search_width_N, 30, "width of the search interval of N, mm");
+DEFINE_bool(declare, false, "write noise, encoder jitter and form to dataset.yaml as influences");
 DEFINE_uint64(seed, 1, "of all random numbers: the same seed gives the same files");
 DEFINE_string(format, "csv", "csv (angles to 1e-6 deg, lengths to 0.1 um) or npy (every digit)");
 
@@ -35,6 +39,8 @@ int Run(const std::vector<std::string>& arguments) {
   if (FLAGS_out.empty()) return Complain("--out: expected the folder to write");
   if (FLAGS_format != "csv" && FLAGS_format != "npy")
     return Complain("--format: found \"" + FLAGS_format + "\", expected csv or npy");
+  if (FLAGS_form_kind != "modes" && FLAGS_form_kind != "smooth")
+    return Complain("--form_kind: found \"" + FLAGS_form_kind + "\", expected modes or smooth");
   TurntableScene scene;
   scene.pose = {FLAGS_M, FLAGS_N, FLAGS_tilt_x * kDegree, FLAGS_tilt_y * kDegree, 0, 0};
   scene.placements = FLAGS_placements;
@@ -46,8 +52,12 @@ int Run(const std::vector<std::string>& arguments) {
   scene.line_correlation = FLAGS_line_correlation;
   scene.encoder_jitter = FLAGS_encoder_jitter * kDegree;
   scene.form = FLAGS_form;
+  scene.form_kind = FLAGS_form_kind == "modes" ? FormKind::kModes : FormKind::kSmooth;
+  scene.one_plate = FLAGS_one_plate;
   scene.outliers = FLAGS_outliers;
+  scene.background = FLAGS_background;
   scene.missing = FLAGS_missing;
+  scene.declare = FLAGS_declare;
   scene.seed = FLAGS_seed;
   scene.search = SearchAround(scene.pose, FLAGS_search_width_M, FLAGS_search_width_N);
   const auto format = FLAGS_format == "npy" ? ScanFileFormat::kNpy : ScanFileFormat::kCsv;
@@ -80,10 +90,14 @@ const Command kSimulateCommand = {"simulate",
                                    {"line_correlation"},
                                    {"encoder_jitter"},
                                    {"form"},
+                                   {"form_kind"},
+                                   {"one_plate"},
                                    {"outliers"},
+                                   {"background"},
                                    {"missing"},
                                    {"search_width_M"},
                                    {"search_width_N"},
+                                   {"declare"},
                                    {"seed"},
                                    {"format"}},
                                   &Run};

@@ -1,5 +1,6 @@
 #include "io/dataset.h"
 #include <utility>
+#include "io/input_file.h"
 #include "io/message.h"
 
 namespace scancal {
@@ -119,9 +120,16 @@ std::vector<InfluenceSetting> ReadInfluences(YamlMap yaml) {
 
 Result<Dataset> ReadDataset(const std::filesystem::path& folder) {
   std::error_code ignored;
+  const std::filesystem::path file = std::filesystem::is_directory(folder, ignored) ? folder / "dataset.yaml" : folder;
+  SCANCAL_ASSIGN_OR_RETURN(std::string text, ReadText(file));
+  return ParseDataset(std::move(text), file, file.string());
+}
+
+Result<Dataset> ParseDataset(std::string text, const std::filesystem::path& file, const std::string& name) {
   Dataset dataset;
-  dataset.file = std::filesystem::is_directory(folder, ignored) ? folder / "dataset.yaml" : folder;
-  SCANCAL_ASSIGN_OR_RETURN(dataset.yaml, YamlMap::Open(dataset.file));
+  dataset.file = file;
+  SCANCAL_ASSIGN_OR_RETURN(dataset.yaml, YamlMap::Parse(text, name));
+  dataset.text = std::move(text);
   YamlMap& yaml = dataset.yaml;
   CheckVersion(yaml);  // first: what follows may mean something else in another version
   dataset.model = yaml.Text("model");

@@ -27,6 +27,7 @@ struct InfluenceSetting {
 
 struct Dataset {
   std::filesystem::path file;  // .../dataset.yaml
+  std::string text;            // all that it says
   std::string model, name;     // name: empty if not declared
   Units units;
   std::vector<ParameterSetting> parameters;
@@ -38,5 +39,7 @@ struct Dataset {
 // folder: holds dataset.yaml, or that file itself. Checks the format version, units, roles, u >= 0; not yet unknown
 // keys.
 Result<Dataset> ReadDataset(const std::filesystem::path& folder);
+// The same from its text; name: for messages.
+Result<Dataset> ParseDataset(std::string text, const std::filesystem::path& file, const std::string& name);
 
 }  // namespace scancal

@@ -2,10 +2,13 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include "io/result.h"
 
 namespace scancal {
 
-Result<std::string> Sha256(const std::filesystem::path& path);  // 64 lower-case hexadecimal digits
+// 64 lower-case hexadecimal digits.
+Result<std::string> Sha256(const std::filesystem::path& path);
+Result<std::string> Sha256OfText(std::string_view text);
 
 }  // namespace scancal

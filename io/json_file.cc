@@ -44,6 +44,12 @@ std::string ReasonOf(const std::string& message) {
 }  // namespace
 
 Result<Json> ReadJson(const std::filesystem::path& path) {
+  constexpr uintmax_t kMost = uintmax_t{1} << 30;
+  std::error_code ignored;
+  const uintmax_t size =
+      std::filesystem::is_regular_file(path, ignored) ? std::filesystem::file_size(path, ignored) : 0;
+  if (!ignored && size > kMost)
+    return Error{path.string() + ": found " + std::to_string(size) + " bytes, expected at most 1 GiB of JSON"};
   SCANCAL_ASSIGN_OR_RETURN(const std::string file, ReadText(path));
   const std::string_view text = WithoutByteOrderMark(file);
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {

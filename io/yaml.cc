@@ -1,7 +1,6 @@
 #include "io/yaml.h"
 #include <nlohmann/json.hpp>
 #include <utility>
-#include "io/input_file.h"
 #include "io/message.h"
 #include "io/number.h"
 #include "io/yaml_tree.h"
@@ -75,12 +74,11 @@ YamlMap::YamlMap(std::shared_ptr<YamlFile> file, YamlNode* node) : file_(std::mo
   node_->opened = true;
 }
 
-Result<YamlMap> YamlMap::Open(const std::filesystem::path& path) {
-  SCANCAL_ASSIGN_OR_RETURN(const std::string text, ReadText(path));
-  SCANCAL_ASSIGN_OR_RETURN(YamlNode root, ParseYaml(text, path.string()));
-  if (root.kind == Kind::kNothing) return Error{path.string() + ": the file is empty, expected \"key: value\" lines"};
+Result<YamlMap> YamlMap::Parse(std::string_view text, const std::string& name) {
+  SCANCAL_ASSIGN_OR_RETURN(YamlNode root, ParseYaml(text, name));
+  if (root.kind == Kind::kNothing) return Error{name + ": the file is empty, expected \"key: value\" lines"};
   auto file = std::make_shared<YamlFile>();
-  file->name = path.string();
+  file->name = name;
   file->root = std::move(root);
   file->nothing.kind = Kind::kMap;
   if (file->root.kind != Kind::kMap) {

@@ -22,10 +22,10 @@ struct YamlNode;
 class YamlMap {
  public:
   YamlMap();  // of no file, without keys
-  static Result<YamlMap> Open(
-      const std::filesystem::path& path);  // BOM and CRLF are fine; empty, missing, a directory, a list: errors
-  bool Has(std::string_view key) const;    // does not take the key
-  std::vector<std::string> Keys() const;   // in the order of the file
+  // BOM and CRLF are fine; empty, a list: errors. name: for messages.
+  static Result<YamlMap> Parse(std::string_view text, const std::string& name);
+  bool Has(std::string_view key) const;   // does not take the key
+  std::vector<std::string> Keys() const;  // in the order of the file
   bool IsMap(std::string_view key) const;
   bool IsNumber(std::string_view key) const;
   std::string Text(std::string_view key, std::optional<std::string> otherwise = std::nullopt);  // no default: required

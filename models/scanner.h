@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 #include "io/dataset.h"
+#include "io/json_file.h"
 #include "io/point_cloud.h"
 #include "io/result.h"
 #include "solver/calibration.h"
@@ -27,6 +28,9 @@ class Scanner {
   virtual std::string Describe() const = 0;
   // Every file that was read, dataset.yaml first.
   virtual std::vector<std::filesystem::path> Files() const = 0;
+  // For calibration.json: the compressed data, and under "dataset" the text of dataset.yaml. ScannerKind::reload makes
+  // the same scanner of it.
+  virtual Result<Json> Data() const = 0;
   // The published search, then the joint refinement. An Error names a quantity that the data do not determine; doubts
   // about a computed result are fields of the Calibration.
   virtual Result<Calibration> Calibrate(const RefineChoice& choice) const = 0;
@@ -40,6 +44,8 @@ class Scanner {
 struct ScannerKind {
   const char* name;  // `model:` in dataset.yaml
   Result<std::unique_ptr<Scanner>> (*load)(const Dataset& dataset);
+  // From Scanner::Data(), without the scans: every digit of Calibrate() is the same. file: for messages.
+  Result<std::unique_ptr<Scanner>> (*reload)(const Dataset& dataset, const Json& data, const std::string& file);
   // All points of the data set's scans in the frame of the calibration, streamed; returns their number.
   Result<int64_t> (*transform)(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
 };

@@ -7,7 +7,7 @@
 #include <vector>
 #include "models/parts/pseudo_points.h"
 #include "models/parts/rotation.h"
-#include "models/turntable/plate_form.h"
+#include "models/turntable/form_modes.h"
 #include "solver/model.h"
 
 namespace scancal {
@@ -29,7 +29,7 @@ namespace scancal {
 // What may be wrong besides, each nominally zero: the encoder reads alpha + encoder_cos1 cos alpha + encoder_sin1 sin
 // alpha + encoder_cos2 cos 2 alpha + encoder_sin2 sin 2 alpha + encoder_jitter (one a profile); depth is
 // y (1 + scale_y) + shear z + linearity eta^2, eta from -1 to 1 over the depths of all scans; z (1 + scale_z); M and N
-// grow by expansion; the plate's form adds its modes (plate_form.h) to the distance; noise_y, noise_z move single
+// grow by expansion; the plate's form adds its modes (form_modes.h) to the distance; noise_y, noise_z move single
 // points, line_offset and line_slope all points of a profile along depth, as noise does that is correlated along the
 // line.
 class Turntable {

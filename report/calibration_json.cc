@@ -41,6 +41,20 @@ Json TargetJson(const TargetSummary& target) {
   return json;
 }
 
+Json ResidualsJson(const TargetSummary& target) {
+  const ViewResiduals& r = target.residuals;
+  Json json = {{"name", target.name}, {"lags", r.lags}, {"correlation", r.correlation}};
+  json["correlation_length"] = r.correlation_length > 0 ? Json(r.correlation_length) : Json(nullptr);
+  json["correlation_dies_out"] = r.dies_out;
+  json["sigma"] = r.sigma;
+  json["histogram"] = {
+      {"from", -r.histogram_limit}, {"to", r.histogram_limit}, {"unit", "sigma"}, {"counts", Json::array()}};
+  for (const double count : r.histogram) json["histogram"]["counts"].push_back(Whole(count));
+  json["histogram"]["below"] = Whole(r.below);
+  json["histogram"]["above"] = Whole(r.above);
+  return json;
+}
+
 Json ByParameter(const std::vector<std::string>& names, const std::vector<double>& values) {
   Json json = Json::object();
   for (size_t k = 0; k < values.size(); ++k) json[names[k]] = Number(values[k]);
@@ -120,13 +134,14 @@ Json ToJson(const Calibration& c) {
   json["surface"] = Json::object();
   json["jackknife"] = JackknifeJson(c);
   json["montecarlo"] = Json::object();
-  json["residuals"] = Json::object();
+  json["residuals"] = {{"targets", Json::array()}};
+  for (const TargetSummary& target : c.targets) json["residuals"]["targets"].push_back(ResidualsJson(target));
   json["volume"] = Json::object();
-  json["data"] = {{"factors", Json::array()}, {"segments", ""}};
+  json["data"] = Json::object();
   json["converged"] = c.converged;
   json["iterations"] = c.iterations;
   json["inputs"] = Json::array();
-  for (const InputFile& input : c.inputs) json["inputs"].push_back({{"file", input.file}, {"sha256", input.sha256}});
+  for (const HashedFile& input : c.inputs) json["inputs"].push_back({{"file", input.file}, {"sha256", input.sha256}});
   json["command"] = c.command;
   json["version"] = c.version;
   return json;
@@ -154,6 +169,11 @@ Result<Calibration> CalibrationFromJson(const Json& json, const std::string& fil
     parameter.name = name;
     parameter.value = each["value"];
   }
+  if (json.contains("inputs") && json["inputs"].is_array())
+    for (const Json& each : json["inputs"])
+      if (each.is_object() && each.contains("file") && each["file"].is_string() && each.contains("sha256") &&
+          each["sha256"].is_string())
+        result.inputs.push_back({each["file"], each["sha256"]});
   return result;
 }
 

@@ -7,8 +7,8 @@
 
 namespace scancal {
 
-Json ToJson(const Calibration& calibration);
-// What a later command needs of it: model, status, parameters. file: for messages.
+Json ToJson(const Calibration& calibration);  // "data" is left to the scanner
+// What a later command needs of it: model, status, parameters, inputs. file: for messages.
 Result<Calibration> CalibrationFromJson(const Json& json, const std::string& file);
 
 }  // namespace scancal

@@ -18,6 +18,17 @@ struct Parameter {
   double dof = 0, k = 0, U = 0;  // U = k u: 95 % coverage
 };
 
+// Residuals from a line of each view's own, in the order along the view, pooled over the views of a target.
+struct ViewResiduals {
+  std::vector<double> lags, correlation;  // of residuals so many points apart; empty: not known
+  double correlation_length = 0;          // 1 + 2 sum of the correlation over all lags >= 1: 1 is white; 0: not known
+  bool dies_out = true;                   // false: no end of the correlation was seen: the length is a lower bound
+  double sigma = 0;                       // of the residuals, by degrees of freedom; mm
+  double histogram_limit = 0;             // of residual / sigma, to either side
+  std::vector<double> histogram;          // counts in bins of equal width
+  double below = 0, above = 0;            // counts beyond the limits
+};
+
 struct TargetSummary {
   std::string name;
   double points = 0;                                    // used
@@ -25,6 +36,7 @@ struct TargetSummary {
   std::map<std::string, double> set_aside;              // reason -> points
   std::map<std::string, std::vector<double>> geometry;  // as the model describes it: "normal", "distance"
   double rms = 0;                                       // of the fit's own residual, mm
+  ViewResiduals residuals;
 };
 
 struct GridMinimum {
@@ -64,7 +76,7 @@ struct JointRegion {  // all estimated parameters together, coverage 95 %
   double k = 0, dof = 0;
 };
 
-struct InputFile {
+struct HashedFile {
   std::string file, sha256;
 };
 
@@ -89,7 +101,7 @@ struct Calibration {
   int iterations = 0;
   bool converged = false;
   double seconds = 0;
-  std::vector<InputFile> inputs;
+  std::vector<HashedFile> inputs;
   std::string command, version;
 
   bool ok() const { return unreliable.empty(); }

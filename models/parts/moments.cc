@@ -88,4 +88,16 @@ SCANCAL_FOR_EACH_PROCESSOR LineFactor FactorLine(const double* y, const double* 
   return {root, root * mean_z, root * mean_y + of_one, r11, slope * r11 + of_z, r22};
 }
 
+SCANCAL_FOR_EACH_PROCESSOR double SumOfProducts(const double* a, const double* b, size_t n) {
+  Lanes products;
+  ForEach(n, [&](size_t i, size_t k) SCANCAL_INLINE { products.sum[k] += a[i] * b[i]; });
+  return products.Total();
+}
+
+SCANCAL_FOR_EACH_PROCESSOR bool IsAscending(const double* values, size_t n) {
+  Lanes ascents;
+  if (n > 1) ForEach(n - 1, [&](size_t i, size_t k) SCANCAL_INLINE { ascents.sum[k] += values[i] <= values[i + 1]; });
+  return n < 2 || ascents.Total() == static_cast<double>(n - 1);
+}
+
 }  // namespace scancal

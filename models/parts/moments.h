@@ -1,4 +1,4 @@
-// The innermost loop of reading: one profile's points to six numbers.
+// The innermost loops of reading: one profile's points to six numbers, and products of its residuals.
 #pragma once
 #include <cstddef>
 
@@ -13,5 +13,10 @@ struct LineFactor {
 // By modified Gram-Schmidt with one correction, as exact as Householder's QR: sums of squares are taken of residuals,
 // never of raw coordinates. Eight lanes summed in a fixed order: the same digits on every processor. n = 0 gives zeros.
 LineFactor FactorLine(const double* y, const double* z, size_t n);
+
+// sum a_i b_i, in the same lanes.
+double SumOfProducts(const double* a, const double* b, size_t n);
+
+bool IsAscending(const double* values, size_t n);  // nowhere descending, and no nan
 
 }  // namespace scancal

@@ -2,9 +2,9 @@
 #include <glog/logging.h>
 #include <Eigen/QR>
 #include <cmath>
+#include "models/parts/triangle.h"
 
 namespace scancal {
-
 ProfileFactor Factor(std::span<const double> y, std::span<const double> z) {
   CHECK_EQ(y.size(), z.size());
   const LineFactor f = FactorLine(y.data(), z.data(), y.size());
@@ -23,6 +23,20 @@ ProfileFactor Factor(std::span<const double> y, std::span<const double> z, std::
   ProfileFactor r = qr.matrixQR().topRows<3>().triangularView<Eigen::Upper>();
   for (int k = 0; k < 3; ++k)
     if (r(k, k) < 0) r.row(k) = -r.row(k);
+  return r;
+}
+
+ProfileFactor Merged(std::span<const ProfileFactor> parts) {
+  CHECK(!parts.empty());
+  using Rows = Eigen::Matrix<double, 12, 3>;  // of four factors: all segments of a profile in one go
+  using Column = Eigen::Matrix<double, 12, 1>;
+  ProfileFactor r = parts.front();
+  for (size_t next = 1; next < parts.size();) {
+    Rows stacked = Rows::Zero();
+    stacked.topRows<3>() = r;
+    for (Eigen::Index row = 3; row < 12 && next < parts.size(); row += 3) stacked.middleRows<3>(row) = parts[next++];
+    r = Triangle<Column>(stacked.col(0), stacked.col(1), stacked.col(2));
+  }
   return r;
 }
 

@@ -19,6 +19,9 @@ using ProfileFactor = Eigen::Matrix3d;
 ProfileFactor Factor(std::span<const double> y, std::span<const double> z);
 ProfileFactor Factor(std::span<const double> y, std::span<const double> z, std::span<const double> weights);
 
+// Of all the points behind several factors.
+ProfileFactor Merged(std::span<const ProfileFactor> parts);
+
 // sum_i (w_i (a + b z_i + c y_i))^2 over the points = the same over the three, exactly, for every a, b, c.
 // Equal weights at Chebyshev's nodes on the profile's own line, what is left of y across it. Not for an empty profile.
 std::array<PseudoPoint, 3> PseudoPoints(const ProfileFactor& factor);

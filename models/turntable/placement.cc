@@ -1,7 +1,6 @@
 #include "models/turntable/placement.h"
 #include <fmt/format.h>
 #include <glog/logging.h>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -84,27 +83,15 @@ double SetAsideOffPlane(const TurntablePose& pose, std::vector<RawProfile>* prof
   return removed;
 }
 
-// Range at the profile's own line, in the direction of each point: free of the point's own noise.
-std::vector<double> RangesOnLine(std::span<const double> y, std::span<const double> z) {
-  const RobustLine line = FitRobustLine(y, z);
-  const double offset = line.Distance(0, 0);
-  std::vector<double> ranges(y.size());
-  for (size_t i = 0; i < y.size(); ++i) {
-    const double measured = std::hypot(y[i], z[i]);
-    const double towards = (line.Distance(y[i], z[i]) - offset) / measured;  // -offset / range on the line
-    const double on_line = towards != 0 ? -offset / towards : measured;
-    ranges[i] = on_line > 0.5 * measured && on_line < 2 * measured ? on_line : measured;
+void LookAtResiduals(const std::vector<RawProfile>& raw, Placement* placement) {
+  placement->histogram.scale = placement->Pure().sigma();
+  for (size_t k = 0; k < raw.size(); ++k) {
+    const Profile& profile = placement->profiles[k];
+    if (profile.pure_error.dof == 0) continue;
+    const std::vector<double> residuals = ResidualsFromLine(profile, raw[k].y, raw[k].z);
+    placement->lag_sums.Add(residuals);
+    placement->histogram.Add(residuals);
   }
-  return ranges;
-}
-
-PureError PureErrorOf(double sum_of_squares, double count) { return {sum_of_squares, std::max(0.0, count - 2)}; }
-
-// What no line explains in units of the range: the rows (y, z, 1) w with the column of ones last, see Turntable.
-double RangePureError(const ProfileFactor& ranged) {
-  const Eigen::Matrix3d columns = ranged(Eigen::all, std::vector{2, 1, 0});
-  const Eigen::HouseholderQR<Eigen::Matrix3d> qr(columns);
-  return qr.matrixQR()(2, 2) * qr.matrixQR()(2, 2);
 }
 
 }  // namespace
@@ -121,23 +108,19 @@ double Placement::Sweep() const {
   return highest->alpha - lowest->alpha;
 }
 
-Profile CompressProfile(double alpha, std::span<const double> y, std::span<const double> z,
-                        std::span<const double> range) {
-  CHECK(!y.empty());
-  Profile profile;
-  profile.alpha = alpha;
-  profile.count = static_cast<double>(y.size());
-  profile.factor = Factor(y, z);
-  if (range.empty()) {
-    profile.pure_error = PureErrorOf(profile.factor(2, 2) * profile.factor(2, 2), profile.count);
-  } else {
-    profile.ranged = Factor(y, z, RangesOnLine(y, z));
-    profile.pure_error = PureErrorOf(RangePureError(*profile.ranged), profile.count);
+PureError Placement::Pure() const {
+  PureError sum;
+  for (const Profile& profile : profiles) {
+    sum.sum_of_squares += profile.pure_error.sum_of_squares;
+    sum.dof += profile.pure_error.dof;
   }
-  return profile;
+  return sum;
 }
 
-void Clean(RawScan* scan) { scan->off_line = SetAsideOffLine(&scan->profiles); }
+void Clean(RawScan* scan) {
+  for (RawProfile& profile : scan->profiles) OrderAlongLine(&profile);
+  scan->off_line = SetAsideOffLine(&scan->profiles);
+}
 
 Result<RawScan> ReadCleanScan(const ScanDeclaration& scan, double sense) {
   SCANCAL_ASSIGN_OR_RETURN(RawScan raw, ReadRawScan(scan, sense));
@@ -149,6 +132,7 @@ Placement CompressPlacement(const RawScan& scan, const TurntablePose& pose) {
   Placement placement;
   placement.name = scan.name;
   placement.missing = scan.missing;
+  placement.warning = scan.warning;
   if (scan.off_line > 0) placement.set_aside[kReasonOffLine] = scan.off_line;
   std::vector<RawProfile> profiles = scan.profiles;
   if (const double off = SetAsideOffPlane(pose, &profiles); off > 0) placement.set_aside[kReasonOffPlane] = off;
@@ -157,30 +141,21 @@ Placement CompressPlacement(const RawScan& scan, const TurntablePose& pose) {
       for (const double value : *column) placement.largest = std::max(placement.largest, std::abs(value));
     placement.profiles.push_back(CompressProfile(profile.alpha, profile.y, profile.z, profile.range));
   }
+  LookAtResiduals(profiles, &placement);
   return placement;
 }
 
-std::vector<Turntable::View> Views(const std::vector<Profile>& profiles, Turntable::Residuals residuals) {
-  std::vector<Turntable::View> views;
-  for (const Profile& profile : profiles) {
-    const bool along_range = residuals == Turntable::Residuals::kDepth && profile.ranged;
-    const auto points = PseudoPoints(along_range ? *profile.ranged : profile.factor);
-    Turntable::View& view = views.emplace_back();
-    view = {profile.alpha, {points.begin(), points.end()}, profile.count, along_range};
-    Eigen::MatrixXd line(3, 2);
-    for (int i = 0; i < 3; ++i)
-      line.row(i) = std::sqrt(profile.count / 3) * Eigen::RowVector2d(1, points[i].z - points[1].z);
-    view.line = WithoutPureError(view, line);
-  }
-  return views;
-}
-
-Eigen::MatrixXd WithoutPureError(const Turntable::View& view, const Eigen::MatrixXd& columns) {
-  if (!view.along_range) return columns;
-  Eigen::MatrixXd explained(std::ssize(view.points), 2);
-  for (Eigen::Index i = 0; i < explained.rows(); ++i)
-    explained.row(i) = view.points[i].weight * Eigen::RowVector2d(view.points[i].y, view.points[i].z);
-  return explained * Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(explained).solve(columns);
+ViewResiduals SummaryOf(const LagSums& lag_sums, const ResidualHistogram& histogram) {
+  const LineCorrelation along = Correlate(lag_sums);
+  return {along.lags,
+          along.correlation,
+          along.length,
+          along.dies_out,
+          histogram.scale,
+          ResidualHistogram::kLimit,
+          {histogram.counts.begin(), histogram.counts.end()},
+          histogram.below,
+          histogram.above};
 }
 
 Result<void> CheckPlausible(const std::vector<Placement>& placements, const Units& units) {

@@ -2,28 +2,11 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <cmath>
+#include "models/parts/triangle.h"
 #include "solver/triangular_factor.h"
 
 namespace scancal {
 namespace {
-
-// Modified Gram-Schmidt of three columns; the last diagonal entry is the norm of what the first two leave of the third.
-template <class Vector>
-Eigen::Matrix3d Triangle(Vector a, Vector b, Vector c) {
-  Eigen::Matrix3d r = Eigen::Matrix3d::Zero();
-  r(0, 0) = a.norm();
-  if (r(0, 0) > 0) a /= r(0, 0);
-  r(0, 1) = a.dot(b);
-  b -= r(0, 1) * a;
-  r(0, 2) = a.dot(c);
-  c -= r(0, 2) * a;
-  r(1, 1) = b.norm();
-  if (r(1, 1) > 0) b /= r(1, 1);
-  r(1, 2) = b.dot(c);
-  c -= r(1, 2) * b;
-  r(2, 2) = c.norm();
-  return r;
-}
 
 // By inverse iteration, which keeps the small value's relative accuracy.
 double SmallestSingularValue(const Eigen::Matrix3d& r) {

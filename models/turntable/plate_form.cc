@@ -1,38 +1,71 @@
 #include "models/turntable/plate_form.h"
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include "models/turntable/form_modes.h"
 
 namespace scancal {
 namespace {
 
-constexpr int kLowest = 2, kHighest = 4;
+constexpr int kWaves = 8;
+constexpr int kNodes = 40;  // a side, where waves are made free of a plane and scaled
 
-using Legendre = std::array<double, kHighest + 1>;
-
-// Orthonormal on [-1, 1] under its uniform distribution.
-Legendre LegendreAt(double x) {
-  Legendre p;
-  for (int degree = 0; degree <= kHighest; ++degree)
-    p[degree] = std::sqrt(2.0 * degree + 1) * std::legendre(static_cast<unsigned>(degree), x);
-  return p;
-}
+double Node(int k) { return (2 * k + 1.0) / kNodes - 1; }
 
 }  // namespace
 
-FormModes FormModesAt(double u, double v) {
-  const Legendre in_u = LegendreAt(std::clamp(u, -1.0, 1.0)), in_v = LegendreAt(std::clamp(v, -1.0, 1.0));
-  FormModes modes;
-  size_t k = 0;
-  double squares = 0;
-  for (int degree = kLowest; degree <= kHighest; ++degree) {
-    for (int i = 0; i <= degree; ++i) {
-      const double share = 1.0 / (degree * degree);
-      modes[k++] = share * in_u[i] * in_v[degree - i];
-      squares += share * share;
+PlateForm::PlateForm(FormKind kind, double rms, const PlateRectangle& over, Random random) : over_(over) {
+  if (kind == FormKind::kModes) {
+    DrawModes(rms, &random);
+  } else {
+    DrawWaves(rms, &random);
+  }
+}
+
+void PlateForm::DrawModes(double rms, Random* random) {
+  for (int k = 0; k < kFormModes; ++k) modes_.push_back(rms * random->Normal());
+}
+
+void PlateForm::DrawWaves(double rms, Random* random) {
+  const double size = 2 * std::max(over_.half_u, over_.half_v);
+  for (int k = 0; k < kWaves; ++k) {
+    const double length = size * (1 + 2 * random->Uniform()), direction = std::numbers::pi * random->Uniform();
+    const double wave_number = 2 * std::numbers::pi / length;
+    waves_.push_back({wave_number * std::cos(direction) * over_.half_u,
+                      wave_number * std::sin(direction) * over_.half_v, 2 * std::numbers::pi * random->Uniform()});
+  }
+  amplitude_ = 1;
+  double sums[3] = {0, 0, 0}, nodes_squared = 0, squares = 0;
+  for (int i = 0; i < kNodes; ++i) {
+    nodes_squared += Node(i) * Node(i) / kNodes;
+    for (int j = 0; j < kNodes; ++j) {
+      const double height = Waves(Node(i), Node(j)) / (kNodes * kNodes);
+      sums[0] += height;
+      sums[1] += height * Node(i);
+      sums[2] += height * Node(j);
     }
   }
-  for (double& mode : modes) mode /= std::sqrt(squares);
-  return modes;
+  for (int k = 0; k < 3; ++k) plane_[k] = k == 0 ? sums[k] : sums[k] / nodes_squared;
+  for (int i = 0; i < kNodes; ++i)
+    for (int j = 0; j < kNodes; ++j) squares += std::pow(Waves(Node(i), Node(j)), 2) / (kNodes * kNodes);
+  amplitude_ = rms / std::sqrt(squares);
+}
+
+double PlateForm::Waves(double u, double v) const {
+  double sum = -plane_[0] - plane_[1] * u - plane_[2] * v;
+  for (const Wave& wave : waves_) sum += std::cos(wave.along_u * u + wave.along_v * v + wave.phase);
+  return amplitude_ * sum;
+}
+
+double PlateForm::At(double u, double v) const {
+  if (modes_.empty() && waves_.empty()) return 0;
+  u = (u - over_.centre_u) / over_.half_u;
+  v = (v - over_.centre_v) / over_.half_v;
+  if (!waves_.empty()) return Waves(u, v);
+  double sum = 0;
+  const FormModes modes = FormModesAt(u, v);
+  for (size_t k = 0; k < modes_.size(); ++k) sum += modes_[k] * modes[k];
+  return sum;
 }
 
 }  // namespace scancal

@@ -1,14 +1,41 @@
-// The form of a plate that is not quite flat, as a few smooth modes.
+// How a simulated plate deviates from its plane.
 #pragma once
-#include <array>
+#include <vector>
+#include "solver/random.h"
 
 namespace scancal {
 
-// Orthonormal Legendre products of total degree 2 to 4 over [-1, 1]^2, each times its share of the whole: variance
-// falling as degree^-4, together a mean square of one. Amplitudes of standard deviation u then are a form of u rms.
-// Lower degrees are the plane itself.
-inline constexpr int kFormModes = 12;
-using FormModes = std::array<double, kFormModes>;
-FormModes FormModesAt(double u, double v);  // u, v outside the square are taken at its edge
+enum class FormKind {
+  kModes,   // orthonormal Legendre products of total degree 2 to 4, independent normal amplitudes of variance ~
+            // degree^-4
+  kSmooth,  // eight plane waves of random direction and phase, 1 to 3 times as long as the rectangle, its plane removed
+};
+
+struct PlateRectangle {  // on the plate, mm
+  double centre_u = 0, centre_v = 0, half_u = 1, half_v = 1;
+};
+
+// Smooth form over a rectangle (uncertainty specification, section 2). rms, mm: of kModes expected over the ensemble,
+// so that one plate may have twice as much; of kSmooth of every single plate, a function that the modes do not hold.
+class PlateForm {
+ public:
+  PlateForm() = default;  // flat
+  // The same random numbers give the same form, stretched to another rectangle.
+  PlateForm(FormKind kind, double rms, const PlateRectangle& over, Random random);
+  double At(double u, double v) const;  // along the normal, mm; at most a little beyond the rectangle
+
+ private:
+  struct Wave {
+    double along_u, along_v, phase;  // rad per half side
+  };
+  void DrawModes(double rms, Random* random);
+  void DrawWaves(double rms, Random* random);
+  double Waves(double u, double v) const;
+
+  PlateRectangle over_;
+  std::vector<double> modes_;  // amplitudes, mm
+  std::vector<Wave> waves_;
+  double amplitude_ = 0, plane_[3] = {0, 0, 0};  // of the waves
+};
 
 }  // namespace scancal

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include "io/message.h"
 #include "io/progress.h"
+#include "models/parts/moments.h"
 
 namespace scancal {
 namespace {
@@ -85,6 +87,17 @@ bool LooksShuffled(const std::vector<RawProfile>& profiles) {
 }
 
 }  // namespace
+
+void OrderAlongLine(RawProfile* profile) {
+  const std::vector<double>& z = profile->z;
+  if (IsAscending(z.data(), z.size())) return;
+  std::vector<size_t> order(z.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return z[a] < z[b]; });
+  const RawProfile from = *profile;
+  for (const auto column : {&RawProfile::y, &RawProfile::z, &RawProfile::range})
+    for (size_t i = 0; i < (from.*column).size(); ++i) (profile->*column)[i] = (from.*column)[order[i]];
+}
 
 SensorColumns ToSensor(double sense, const ScanBatch& batch) {
   SensorColumns points;

@@ -13,6 +13,8 @@ struct RawProfile {
   std::vector<double> range;  // mm; a lidar's, else empty
 };
 
+void OrderAlongLine(RawProfile* profile);  // by z; points at one z keep their order
+
 struct RawScan {
   std::string name;                  // of the target
   std::vector<RawProfile> profiles;  // in the order of their keys

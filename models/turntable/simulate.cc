@@ -10,47 +10,16 @@ namespace scancal {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kStandoff = 75;  // mm from the profiler's zero to the plate, straight ahead
-constexpr double kSpike = 30;     // mm
-
-// Smooth form of a plate (uncertainty specification, section 2): orthonormal Legendre products of total degree 2 to 4
-// over the square [-1, 1]^2, variance falling as degree^-4, scaled to unit rms.
-class Form {
- public:
-  Form(double rms, Random* random) : rms_(rms) {
-    double squares = 0;
-    for (unsigned degree = 2; degree <= 4; ++degree) {
-      for (unsigned i = 0; i <= degree; ++i) {
-        const double amplitude = random->Normal() / std::pow(degree, 2);
-        modes_.push_back({i, degree - i, amplitude});
-        squares += amplitude * amplitude;
-      }
-    }
-    for (Mode& mode : modes_) mode.amplitude /= std::sqrt(squares);
-  }
-  double At(double u, double v) const {  // mm along the normal
-    if (rms_ == 0) return 0;
-    u = std::clamp(u, -1.0, 1.0);
-    v = std::clamp(v, -1.0, 1.0);
-    double sum = 0;
-    for (const Mode& mode : modes_)
-      sum += mode.amplitude * std::sqrt((2 * mode.i + 1) * (2 * mode.j + 1)) * std::legendre(mode.i, u) *
-             std::legendre(mode.j, v);
-    return rms_ * sum;
-  }
-
- private:
-  struct Mode {
-    unsigned i, j;
-    double amplitude;
-  };
-  double rms_;
-  std::vector<Mode> modes_;
-};
+constexpr double kStandoff = 75;                         // mm from the profiler's zero to the plate, straight ahead
+constexpr double kSpike = 30;                            // mm
+constexpr double kNearestWall = 30, kFarthestWall = 60;  // mm behind the plate
+constexpr double kLeastHalf = 1;                         // mm: of what is seen of a plate by a single profile or point
+// Placements have the streams 1, 2, ...
+constexpr uint64_t kFormStreams = uint64_t{1} << 32, kBackgroundStreams = uint64_t{2} << 32;
 
 struct Plate {
   Eigen::Vector3d normal, centre, across, up;
-  double half_size;
+  PlateForm form;
 };
 
 // Names as in the paper for three placements: left, centre, right.
@@ -69,24 +38,67 @@ Plate PlacePlate(const TurntableScene& scene, int placement) {
   plate.centre = scene.pose.Point(0, kStandoff, 0);
   plate.across = plate.normal.cross(Eigen::Vector3d::UnitZ()).normalized();
   plate.up = plate.across.cross(plate.normal);
-  const double arc = (std::hypot(scene.pose.M, scene.pose.N) + kStandoff) * std::sin(scene.sweep / 2);
-  plate.half_size = 1.2 * std::max(arc, scene.line_length / 2);
   return plate;
 }
 
 // Depth at which the profiler, turned by alpha, sees height z of the plate with its form. Affine in y but for the form,
 // whose slope is small, so two steps settle it.
-double TrueDepth(const TurntablePose& pose, const Plate& plate, const Form& form, double alpha, double z) {
+double TrueDepth(const TurntablePose& pose, const Plate& plate, double alpha, double z) {
   const Eigen::Vector3d at_zero = pose.Point(alpha, 0, z), along = pose.Point(alpha, 1, z) - at_zero;
   double y = 0;
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d p = at_zero + y * along - plate.centre;
-    const double height =
-        k == 0 ? 0 : form.At(plate.across.dot(p) / plate.half_size, plate.up.dot(p) / plate.half_size);
+    const double height = k == 0 ? 0 : plate.form.At(plate.across.dot(p), plate.up.dot(p));
     y += (height - plate.normal.dot(p)) / plate.normal.dot(along);
   }
   return y;
 }
+
+// From -extent / 2 to extent / 2.
+double Spread(double extent, int index, int count) {
+  return count == 1 ? 0 : extent * (static_cast<double>(index) / (count - 1) - 0.5);
+}
+
+// What the scan sees of the plate, were it flat.
+PlateRectangle Seen(const TurntableScene& scene, const Plate& flat) {
+  Eigen::AlignedBox2d box;
+  for (int i = 0; i < scene.profiles; ++i) {
+    for (int j = 0; j < scene.points; ++j) {
+      const double alpha = Spread(scene.sweep, i, scene.profiles), z = Spread(scene.line_length, j, scene.points);
+      const Eigen::Vector3d p = scene.pose.Point(alpha, TrueDepth(scene.pose, flat, alpha, z), z) - flat.centre;
+      box.extend(Eigen::Vector2d(flat.across.dot(p), flat.up.dot(p)));
+    }
+  }
+  const Eigen::Vector2d half = (box.sizes() / 2).cwiseMax(kLeastHalf);
+  return {box.center().x(), box.center().y(), half.x(), half.y()};
+}
+
+PlateForm FormOf(const TurntableScene& scene, int placement, const Plate& flat) {
+  if (scene.form == 0) return {};
+  const uint64_t stream = kFormStreams + (scene.one_plate ? 0 : static_cast<uint64_t>(placement));
+  return {scene.form_kind, scene.form, Seen(scene, flat), Random(scene.seed, stream)};
+}
+
+// A wall behind the plate, seen at one end of each line.
+class Background {
+ public:
+  Background(const TurntableScene& scene, int placement)
+      : random_(scene.seed, kBackgroundStreams + static_cast<uint64_t>(placement)),
+        behind_(kNearestWall + (kFarthestWall - kNearestWall) * random_.Uniform()),
+        points_(scene.points),
+        covered_(static_cast<int>(std::lround(scene.background * scene.points))) {}
+  void NextProfile() { at_start_ = random_.Uniform() < 0.5; }
+  double Behind(int point) const {  // mm along depth
+    const bool covered = at_start_ ? point < covered_ : point >= points_ - covered_;
+    return covered ? behind_ : 0;
+  }
+
+ private:
+  Random random_;
+  double behind_;
+  int points_, covered_;
+  bool at_start_ = true;
+};
 
 }  // namespace
 
@@ -97,27 +109,26 @@ GridBox SearchAround(const TurntablePose& pose, double width_M, double width_N) 
 
 std::vector<SimulatedPlacement> SimulateTurntable(const TurntableScene& scene) {
   std::vector<SimulatedPlacement> placements;
-  Random of_plate(scene.seed, 0);
-  const Form form(scene.form, &of_plate);
   const double correlation = (scene.line_correlation - 1) / (scene.line_correlation + 1);  // of neighbours, AR(1)
   for (int k = 0; k < scene.placements; ++k) {
     Random random(scene.seed, static_cast<uint64_t>(k) + 1);
-    const Plate plate = PlacePlate(scene, k);
+    Plate plate = PlacePlate(scene, k);
+    plate.form = FormOf(scene, k, plate);
+    Background background(scene, k);
     SimulatedPlacement& placement = placements.emplace_back();
     placement.name = NameOf(k, scene.placements);
     placement.normal = plate.normal;
     placement.distance = plate.normal.dot(plate.centre);
     for (int i = 0; i < scene.profiles; ++i) {
-      const double alpha =
-          scene.profiles == 1 ? 0 : scene.sweep * (static_cast<double>(i) / (scene.profiles - 1) - 0.5);
+      const double alpha = Spread(scene.sweep, i, scene.profiles);
       SimulatedProfile& profile = placement.profiles.emplace_back();
       profile.alpha = alpha + scene.encoder_jitter * random.Normal();
+      background.NextProfile();
       double noise = random.Normal();
       for (int j = 0; j < scene.points; ++j) {
-        const double z =
-            scene.points == 1 ? 0 : scene.line_length * (static_cast<double>(j) / (scene.points - 1) - 0.5);
+        const double z = Spread(scene.line_length, j, scene.points);
         if (j > 0) noise = correlation * noise + std::sqrt(1 - correlation * correlation) * random.Normal();
-        double y = TrueDepth(scene.pose, plate, form, alpha, z) + scene.noise_y * noise;
+        double y = TrueDepth(scene.pose, plate, alpha, z) + background.Behind(j) + scene.noise_y * noise;
         // The same number of draws for every point, so that one kind of error does not shift the others.
         const double spike = random.Uniform(), how_far = random.Uniform(), lost = random.Uniform();
         if (spike < scene.outliers) y += kSpike * (2 * how_far - 1);

@@ -7,6 +7,7 @@
 #include <vector>
 #include "io/result.h"
 #include "models/turntable.h"
+#include "models/turntable/plate_form.h"
 #include "solver/grid_search.h"
 
 namespace scancal {
@@ -14,16 +15,20 @@ namespace scancal {
 struct TurntableScene {
   TurntablePose pose{123, 409, 0, 0, 0, 0};
   int placements = 3;
-  int profiles = 200, points = 200;           // per placement, per profile
-  double sweep = 30 * 0.017453292519943295;   // rad, from -sweep/2 to sweep/2
-  double line_length = 200;                   // mm, along z
-  double noise_y = 0.05;                      // mm, standard deviation along depth
-  double line_correlation = 1;                // points: integrated correlation length of that noise; 1 = white
-  double encoder_jitter = 0;                  // rad, one error a profile
-  double form = 0;                            // mm rms: smooth deviation of the plate, one for all placements
+  int profiles = 200, points = 200;          // per placement, per profile
+  double sweep = 30 * 0.017453292519943295;  // rad, from -sweep/2 to sweep/2
+  double line_length = 200;                  // mm, along z
+  double noise_y = 0.05;                     // mm, standard deviation along depth
+  double line_correlation = 1;               // points: integrated correlation length of that noise; 1 = white
+  double encoder_jitter = 0;                 // rad, one error a profile
+  double form = 0;                           // mm rms: smooth deviation of the plate over what the scan sees of it
+  FormKind form_kind = FormKind::kModes;
+  bool one_plate = false;                     // the same form in every placement, not one of its own
   double outliers = 0;                        // share of points that are spikes within +-30 mm of the plate
+  double background = 0;                      // share of every line, at either end, that sees a wall 30 to 60 mm behind
   double missing = 0;                         // share of points without a return
   GridBox search{{110, 395}, {130, 425}, 1};  // written to dataset.yaml
+  bool declare = false;                       // write noise, jitter and form to dataset.yaml as influences
   uint64_t seed = 1;
 };
 
@@ -44,7 +49,8 @@ struct SimulatedPlacement {
 };
 
 // Placements of a plate that lean by 5 to 20 degrees from the axis and are turned about it by up to +-25 degrees, 75 mm
-// in front of the profiler. Noise of each placement is a stream of the seed: the same for any number of placements.
+// in front of the profiler. Noise, form and background of each placement are streams of the seed: the same for any
+// number of placements, and none shifts the others.
 std::vector<SimulatedPlacement> SimulateTurntable(const TurntableScene& scene);
 
 enum class ScanFileFormat { kCsv, kNpy };

@@ -1,5 +1,7 @@
 #include "models/turntable/smooth_columns.h"
 #include <Eigen/QR>
+#include <array>
+#include <cmath>
 #include <limits>
 
 namespace scancal {
@@ -18,9 +20,22 @@ struct PlateFrame {
   Eigen::Vector3d across, up;
 };
 
+// Where the profile bends, its four segments show it.
 std::vector<PseudoPoint> PointsOf(const Profile& profile) {
-  const auto points = PseudoPoints(profile.factor);
-  return {points.begin(), points.end()};
+  std::vector<PseudoPoint> all;
+  for (const ProfileFactor& segment : profile.segments) {
+    const auto points = PseudoPoints(segment);
+    all.insert(all.end(), points.begin(), points.end());
+  }
+  return all;
+}
+
+// Both ends of a segment with evenly spread points: its pseudo-points end at sqrt(1.5) standard deviations, it at
+// sqrt(3).
+std::array<PseudoPoint, 2> EndsOf(const ProfileFactor& segment) {
+  const auto [first, middle, last] = PseudoPoints(segment);
+  const double y = std::sqrt(2.0) * (last.y - first.y) / 2, z = std::sqrt(2.0) * (last.z - middle.z);
+  return {{{1, middle.y - y, middle.z - z}, {1, middle.y + y, middle.z + z}}};
 }
 
 // Smallest and largest of every coordinate.
@@ -66,7 +81,8 @@ void AddForm(const std::vector<Profile>& profiles, const TurntablePose& pose, co
   };
   Bounds plate;
   for (const Profile& profile : profiles)
-    for (const PseudoPoint& p : PointsOf(profile)) plate.Add(on_plate(profile, p));
+    for (const ProfileFactor& segment : profile.segments)
+      for (const PseudoPoint& p : EndsOf(segment)) plate.Add(on_plate(profile, p));
   for (size_t k = 0; k < profiles.size(); ++k) {
     Turntable::View& view = (*views)[k];
     view.form = AsLine(profiles[k], view, kFormModes, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
@@ -80,7 +96,8 @@ void AddBend(const std::vector<Placement>& placements, std::vector<Turntable::Ta
   Bounds depth;
   for (const Placement& placement : placements)
     for (const Profile& profile : placement.profiles)
-      for (const PseudoPoint& p : PointsOf(profile)) depth.Add(Eigen::Array2d(p.y, 0));
+      for (const ProfileFactor& segment : profile.segments)
+        for (const PseudoPoint& p : EndsOf(segment)) depth.Add(Eigen::Array2d(p.y, 0));
   for (size_t t = 0; t < placements.size(); ++t) {
     for (size_t k = 0; k < placements[t].profiles.size(); ++k) {
       Turntable::View& view = (*targets)[t].views[k];

@@ -8,7 +8,7 @@ namespace scancal {
 // Both fill columns of the views: the error at the points of the profile, as the straight line that it looks like
 // there. What is left of it bends the profile; that moves no plane, and is lost in the noise of single points.
 
-// `form` of every view, the modes of plate_form.h. The plate's square is the rectangle that bounds the points as they
+// `form` of every view, the modes of form_modes.h. The plate's square is the rectangle that bounds the points as they
 // lie on the plane n . P = d at `pose`: across the plate at right angles to the table's axis, and up. It starts
 // from the placement's own points, so one plate in all placements has one form only if its edges are in view.
 void AddForm(const std::vector<Profile>& profiles, const TurntablePose& pose, const Eigen::Vector3d& normal,

@@ -53,10 +53,8 @@ TurntablePose MiddleOf(const GridBox& box, const Turntable& model) {
 PureError Pooled(const std::vector<Placement>& placements) {
   PureError sum;
   for (const Placement& placement : placements) {
-    for (const Profile& profile : placement.profiles) {
-      sum.sum_of_squares += profile.pure_error.sum_of_squares;
-      sum.dof += profile.pure_error.dof;
-    }
+    sum.sum_of_squares += placement.Pure().sum_of_squares;
+    sum.dof += placement.Pure().dof;
   }
   return sum;
 }
@@ -207,6 +205,7 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
     TargetSummary& target = result.targets[t];
     target.missing = placements_[t].missing;
     target.set_aside = placements_[t].set_aside;
+    target.residuals = SummaryOf(placements_[t].lag_sums, placements_[t].histogram);
     const auto [normal, distance] = fit.Plane(t);
     target.geometry = {{"normal", {normal[0], normal[1], normal[2]}}, {"distance", {distance}}};
   }

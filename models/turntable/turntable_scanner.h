@@ -35,6 +35,7 @@ class TurntableScanner final : public Scanner {
   TurntableScanner(TurntableDeclaration declaration, Turntable model, std::vector<Placement> placements);
   std::string Describe() const override;
   std::vector<std::filesystem::path> Files() const override;
+  Result<Json> Data() const override;
   Result<Calibration> Calibrate(const RefineChoice& choice) const override;
   Result<Comparison> Compare() const override;
   Result<void> WriteSurface(const std::filesystem::path& file) const override;
@@ -64,8 +65,9 @@ class TurntableScanner final : public Scanner {
 Result<std::unique_ptr<TurntableScanner>> CompressTurntable(const TurntableDeclaration& declaration,
                                                             const Turntable& model, const std::vector<RawScan>& scans);
 Result<std::unique_ptr<Scanner>> LoadTurntable(const Dataset& dataset);
+Result<std::unique_ptr<Scanner>> ReloadTurntable(const Dataset& dataset, const Json& data, const std::string& file);
 Result<int64_t> TransformTurntable(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
 
-inline constexpr ScannerKind kTurntable = {"turntable", &LoadTurntable, &TransformTurntable};
+inline constexpr ScannerKind kTurntable = {"turntable", &LoadTurntable, &ReloadTurntable, &TransformTurntable};
 
 }  // namespace scancal

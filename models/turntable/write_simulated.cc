@@ -30,8 +30,8 @@ Result<void> CheckNumbers(const TurntableScene& scene) {
     if (!std::isfinite(number)) return Error{"M, N and tilts: expected finite numbers"};
   if (scene.placements < 1 || scene.profiles < 1 || scene.points < 1)
     return Error{"placements, profiles and points: expected one or more of each"};
-  if (!is_share(scene.outliers) || !is_share(scene.missing))
-    return Error{"outliers and missing: expected shares from 0 to below 1"};
+  if (!is_share(scene.outliers) || !is_share(scene.background) || !is_share(scene.missing))
+    return Error{"outliers, background and missing: expected shares from 0 to below 1"};
   if (!not_negative(scene.noise_y) || !not_negative(scene.encoder_jitter) || !not_negative(scene.form))
     return Error{"noise, jitter and form: expected numbers that are not negative"};
   if (!(scene.line_correlation >= 1)) return Error{"line correlation: expected 1 (white) or more points"};
@@ -92,6 +92,14 @@ Result<void> WriteNpy(const SimulatedPlacement& placement, OutputFile* file) {
   return {};
 }
 
+std::string Influences(const TurntableScene& scene) {
+  std::string list;
+  for (const auto& [name, u] :
+       {std::pair{"noise_y", scene.noise_y}, {"encoder_jitter", scene.encoder_jitter / kDegree}, {"form", scene.form}})
+    if (u > 0) list += fmt::format("{}{}: {:g}", list.empty() ? "" : ", ", name, u);
+  return list.empty() ? "" : "influences: {" + list + "}\n";
+}
+
 std::string DatasetYaml(const TurntableScene& scene, const std::vector<SimulatedPlacement>& placements,
                         ScanFileFormat format) {
   std::string yaml = fmt::format(
@@ -101,6 +109,7 @@ std::string DatasetYaml(const TurntableScene& scene, const std::vector<Simulated
       scene.search.upper[1], scene.search.step);
   const bool csv = format == ScanFileFormat::kCsv;
   if (!csv) yaml += "columns: [angle, y, z]\n";
+  if (scene.declare) yaml += Influences(scene);
   yaml += "targets:\n";
   for (const SimulatedPlacement& placement : placements)
     yaml += "  - {name: " + placement.name + ", scan: " + placement.name + (csv ? ".csv" : ".npy") + "}\n";
@@ -118,7 +127,12 @@ Json Truth(const TurntableScene& scene, const std::vector<SimulatedPlacement>& p
   truth["line_correlation"] = scene.line_correlation;
   truth["encoder_jitter"] = scene.encoder_jitter;
   truth["form"] = scene.form;
+  if (scene.form > 0) {
+    truth["form_kind"] = scene.form_kind == FormKind::kModes ? "modes" : "smooth";
+    truth["one_plate"] = scene.one_plate;
+  }
   truth["outliers"] = scene.outliers;
+  if (scene.background > 0) truth["background"] = scene.background;
   truth["missing"] = scene.missing;
   truth["seed"] = scene.seed;
   truth["targets"] = Json::array();

@@ -93,6 +93,27 @@ TEST_F(BackgroundTest, PartOfTheLineInPartOfTheProfiles) {
   ExpectAsDeleted(deleted, disturbed);
 }
 
+// Against the same scans with the background deleted: what remains of the points, not of the plate, makes another
+// estimate than all points do.
+TEST_F(BackgroundTest, AWallAtEitherEndOfEveryLine) {
+  for (const std::string seed : {"2", "3"}) {
+    Simulate(data_, {"--profiles=60", "--points=40", "--seed=" + seed});
+    const fs::path disturbed_data = Path("disturbed");
+    Simulate(disturbed_data, {"--profiles=60", "--points=40", "--seed=" + seed, "--background=0.3"});
+    for (const std::string& name : kNames) {
+      std::vector<ScanPoint> points = ReadPoints(data_ / (name + ".csv"));
+      const std::vector<ScanPoint> disturbed = ReadPoints(disturbed_data / (name + ".csv"));
+      for (size_t i = 0; i < points.size(); ++i)
+        if (disturbed[i].y > points[i].y + 1) points[i].y = std::nan("");
+      WritePoints(data_ / (name + ".csv"), points);
+    }
+    const Json deleted = Refined(data_), disturbed = Refined(disturbed_data);
+    EXPECT_EQ(deleted["targets"][0]["missing"], 720);
+    ExpectSetAside(disturbed, 720);
+    ExpectAsDeleted(deleted, disturbed);
+  }
+}
+
 TEST_F(BackgroundTest, TheCountsArePrinted) {
   MoveAway([](size_t, size_t i) { return i < 12; });
   EXPECT_THAT(Refine(data_).out,

@@ -61,8 +61,9 @@ TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
   EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out"));
   EXPECT_THAT(HelpFlags("simulate"),
               UnorderedElementsAre("out", "M", "N", "tilt_x", "tilt_y", "placements", "profiles", "points", "sweep",
-                                   "line_length", "noise", "line_correlation", "encoder_jitter", "form", "outliers",
-                                   "missing", "search_width_M", "search_width_N", "seed", "format"));
+                                   "line_length", "noise", "line_correlation", "encoder_jitter", "form", "form_kind",
+                                   "one_plate", "outliers", "background", "declare", "missing", "search_width_M",
+                                   "search_width_N", "seed", "format"));
 }
 
 TEST(HelpTest, FlagsHaveUnitsAndDefaults) {

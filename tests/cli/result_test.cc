@@ -51,7 +51,8 @@ TEST_F(ResultTest, EveryKeyOfTheSpecificationIsThere) {
   for (const char* key : {"F", "dof1", "dof2", "p"}) EXPECT_TRUE(result_["lack_of_fit"].contains(key)) << key;
   for (const char* key : {"source", "type", "value", "unit", "sensitivity", "u", "share", "dof"})
     EXPECT_TRUE(result_["budget"][0].contains(key)) << "budget: " << key;
-  for (const char* key : {"factors", "segments"}) EXPECT_TRUE(result_["data"].contains(key)) << key;
+  for (const char* key : {"layout", "targets", "sha256", "segments", "dataset"})
+    EXPECT_TRUE(result_["data"].contains(key)) << key;
   for (const char* key : {"file", "sha256"}) EXPECT_TRUE(result_["inputs"][0].contains(key)) << key;
 }
 

@@ -7,6 +7,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class SimulateTest : public CliTest {
  protected:
@@ -86,6 +87,26 @@ TEST_F(SimulateTest, TheSampleIsWhatItsSeedMakes) {
                             "--missing=0.005", "--encoder_jitter=0.002"});
   for (const char* file : {"left.csv", "centre.csv", "right.csv", "dataset.yaml", "truth.json"})
     EXPECT_TRUE(ReadWhole(sample / file) == ReadWhole(Path("sample") / file)) << file;
+}
+
+TEST_F(SimulateTest, WhatWasSimulatedMayBeDeclared) {
+  const fs::path data = Simulated({"--noise=0.04", "--encoder_jitter=0.002", "--form=0.005", "--declare"});
+  EXPECT_THAT(ReadWhole(data / "dataset.yaml"),
+              HasSubstr("\ninfluences: {noise_y: 0.04, encoder_jitter: 0.002, form: 0.005}\n"));
+  EXPECT_NE(Refine(data).exit_code, 1);
+  const fs::path none = Simulated({"--noise=0", "--declare"}, "none");
+  EXPECT_THAT(ReadWhole(none / "dataset.yaml"), Not(HasSubstr("influences")));
+}
+
+TEST_F(SimulateTest, FormIsOfItsKind) {
+  const fs::path modes = Simulated({"--form=0.01", "--one_plate"}, "modes"),
+                 smooth = Simulated({"--form=0.01", "--form_kind=smooth"}, "smooth");
+  EXPECT_NE(ReadWhole(modes / "left.csv"), ReadWhole(smooth / "left.csv"));
+  EXPECT_EQ((*ReadJson(modes / "truth.json"))["form_kind"], "modes");
+  EXPECT_EQ((*ReadJson(modes / "truth.json"))["one_plate"], true);
+  EXPECT_EQ((*ReadJson(smooth / "truth.json"))["form_kind"], "smooth");
+  EXPECT_THAT(OneSentence(RunScancal({"simulate", "--form_kind=rough", "--out=" + Path("x").string()})),
+              HasSubstr("--form_kind: found \"rough\", expected modes or smooth"));
 }
 
 TEST_F(SimulateTest, TheSampleGivesItsTruth) {

@@ -15,6 +15,11 @@ TEST(HashTest, KnownAnswers) {
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
+TEST(HashTest, OfATextIsThatOfAFileWithIt) {
+  const TemporaryFolder folder;
+  for (const char* text : {"", "abc"}) EXPECT_EQ(*Sha256OfText(text), *Sha256(folder.Write("text", text)));
+}
+
 // One block of reading and one byte more or less: the same text read in another way.
 TEST(HashTest, BlocksOfReadingDoNotShow) {
   const TemporaryFolder folder;

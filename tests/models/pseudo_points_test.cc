@@ -1,7 +1,6 @@
 #include "models/parts/pseudo_points.h"
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
-#include "models/turntable/placement.h"
 #include "solver/random.h"
 
 namespace scancal {
@@ -83,30 +82,17 @@ TEST(FactorLine, EqualsHouseholder) {
             1e-12 * Factor(points.y, points.z).norm());
 }
 
-TEST(CompressProfile, KnowsThePureErrorOfDepth) {
-  const Points points = Line(4000, 0.05, 6);
-  const Profile profile = CompressProfile(0, points.y, points.z, {});
-  EXPECT_EQ(profile.pure_error.dof, 3998);
-  EXPECT_NEAR(profile.pure_error.sigma(), 0.05, 4 * 0.05 / std::sqrt(2 * 3998.0));
-}
-
-TEST(CompressProfile, KnowsThePureErrorOfALidarAlongTheRange) {
-  // A wall 2 m ahead, slanted against the fan: noise of 10 mm along the range only.
-  Random random(7, 0);
-  std::vector<double> y, z, range;
-  for (int i = 0; i < 4000; ++i) {
-    const double bearing = -0.9 + 1.8 * i / 4000;
-    range.push_back(2000 / (std::cos(bearing) + 0.4 * std::sin(bearing)) + 10 * random.Normal());
-    y.push_back(range.back() * std::cos(bearing));
-    z.push_back(range.back() * std::sin(bearing));
+TEST(Merged, IsTheFactorOfAllPoints) {
+  const Points points = Line(90, 0.05, 6);
+  const std::span<const double> y = points.y, z = points.z;
+  for (const std::vector<size_t>& starts : {std::vector<size_t>{0}, {0, 1}, {0, 1, 3, 40}, {0, 1, 3, 10, 30, 31, 80}}) {
+    std::vector<ProfileFactor> parts;
+    for (size_t k = 0; k < starts.size(); ++k) {
+      const size_t count = (k + 1 < starts.size() ? starts[k + 1] : y.size()) - starts[k];
+      parts.push_back(Factor(y.subspan(starts[k], count), z.subspan(starts[k], count)));
+    }
+    EXPECT_LT((Merged(parts) - Factor(y, z)).norm(), 1e-12 * Factor(y, z).norm()) << parts.size() << " parts";
   }
-  const Profile profile = CompressProfile(0, y, z, range);
-  EXPECT_NEAR(profile.pure_error.sigma(), 10, 4 * 10 / std::sqrt(2 * 3998.0));
-}
-
-TEST(CompressProfile, OfOnePointHasNoDegreesOfFreedom) {
-  const std::vector<double> y = {70}, z = {3};
-  EXPECT_EQ(CompressProfile(0.1, y, z, {}).pure_error.dof, 0);
 }
 
 }  // namespace

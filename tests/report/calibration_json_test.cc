@@ -39,7 +39,8 @@ Calibration SomeCalibration() {
                 3,
                 {{"off the line of their profile", 2}, {"off the plane of their target", 5}},
                 {{"normal", {0, -1, 0}}, {"distance", {480}}},
-                0.05}};
+                0.05,
+                {{0, 1, 2}, {1, 0.25, 0}, 1.5, false, 0.04, 8, {1, 700, 0}, 2, 3}}};
   c.sigma = 0.05;
   c.inputs = {{"left.csv", "abc"}};
   c.command = "scancal refine data";
@@ -91,6 +92,23 @@ TEST(CalibrationJsonTest, AnUnreliableOneStaysUnreliable) {
   const auto after = CalibrationFromJson(json, "f");
   ASSERT_TRUE(after.ok());
   EXPECT_FALSE(after->ok());
+}
+
+TEST(CalibrationJsonTest, ResidualsAlongTheViews) {
+  Calibration c = SomeCalibration();
+  c.targets.emplace_back().name = "right";  // of which nothing is known
+  const Json json = ToJson(c)["residuals"]["targets"];
+  EXPECT_EQ(json[0]["name"], "left");
+  EXPECT_EQ(json[0]["lags"], Json({0.0, 1.0, 2.0}));
+  EXPECT_EQ(json[0]["correlation"], Json({1.0, 0.25, 0.0}));
+  EXPECT_EQ(json[0]["correlation_length"], 1.5);
+  EXPECT_EQ(json[0]["correlation_dies_out"], false);
+  EXPECT_EQ(json[0]["histogram"]["from"], -8);
+  EXPECT_EQ(json[0]["histogram"]["counts"], Json({1, 700, 0}));
+  EXPECT_EQ(json[0]["histogram"]["below"], 2);
+  EXPECT_EQ(json[0]["histogram"]["above"], 3);
+  EXPECT_TRUE(json[1]["correlation_length"].is_null());
+  EXPECT_TRUE(json[1]["lags"].empty());
 }
 
 TEST(CalibrationJsonTest, WhatIsNotFiniteIsNull) {
