@@ -117,10 +117,14 @@ PureError Placement::Pure() const {
   return sum;
 }
 
+void Clean(RawScan* scan) {
+  for (RawProfile& profile : scan->profiles) OrderAlongLine(&profile);
+  scan->off_line = SetAsideOffLine(&scan->profiles);
+}
+
 Result<RawScan> ReadCleanScan(const ScanDeclaration& scan, double sense) {
   SCANCAL_ASSIGN_OR_RETURN(RawScan raw, ReadRawScan(scan, sense));
-  for (RawProfile& profile : raw.profiles) OrderAlongLine(&profile);
-  raw.off_line = SetAsideOffLine(&raw.profiles);
+  Clean(&raw);
   return raw;
 }
 

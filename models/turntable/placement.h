@@ -28,7 +28,10 @@ struct Placement {
   bool IsLidar() const { return !profiles.empty() && profiles.front().ranged.has_value(); }
 };
 
-// Reads, keeps, groups into profiles ordered along z, and removes what is off each profile's own line. Shows progress.
+// Orders the points of each profile along z and removes what is off its own line.
+void Clean(RawScan* scan);
+
+// Reads, keeps, groups into profiles, and cleans. Shows progress.
 Result<RawScan> ReadCleanScan(const ScanDeclaration& scan, double sense);
 
 // Sets aside what is off the plane of most profiles, as it appears at `pose`, and compresses the rest.

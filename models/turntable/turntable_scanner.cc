@@ -217,8 +217,6 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
   return result;
 }
 
-// Setting aside needs M and N, finding them needs clean points: in turn, until nothing changes. The first round is in
-// the middle of the search interval.
 Result<std::unique_ptr<Scanner>> LoadTurntable(const Dataset& dataset) {
   Turntable model(Turntable::Residuals::kDepth);
   SCANCAL_ASSIGN_OR_RETURN(TurntableDeclaration declaration, DeclareTurntable(dataset, &model));
@@ -228,19 +226,27 @@ Result<std::unique_ptr<Scanner>> LoadTurntable(const Dataset& dataset) {
     if (!raw.warning.empty()) declaration.warnings.push_back(raw.warning);
     scans.push_back(std::move(raw));
   }
+  SCANCAL_ASSIGN_OR_RETURN(std::unique_ptr<TurntableScanner> scanner, CompressTurntable(declaration, model, scans));
+  return std::unique_ptr<Scanner>(std::move(scanner));
+}
+
+// Setting aside needs M and N, finding them needs clean points: in turn, until nothing changes. The first round is in
+// the middle of the search interval.
+Result<std::unique_ptr<TurntableScanner>> CompressTurntable(const TurntableDeclaration& declaration,
+                                                            const Turntable& model, const std::vector<RawScan>& scans) {
   std::unique_ptr<TurntableScanner> scanner;
   TurntablePose pose = MiddleOf(BoxOf(declaration, model), model);
   for (int round = 0; round < kRoundsOfReading; ++round) {
     std::vector<Placement> placements;
     for (const RawScan& scan : scans) placements.push_back(CompressPlacement(scan, pose));
     if (scanner && SamePoints(placements, scanner->placements())) break;
-    SCANCAL_RETURN_IF_ERROR(CheckPlausible(placements, dataset.units));
+    SCANCAL_RETURN_IF_ERROR(CheckPlausible(placements, declaration.dataset.units));
     scanner = std::make_unique<TurntableScanner>(declaration, model, std::move(placements));
     const Result<TurntableStart> start = scanner->Initialize();
     if (!start.ok()) break;  // Calibrate will say so
     pose = start->pose;
   }
-  return std::unique_ptr<Scanner>(std::move(scanner));
+  return scanner;
 }
 
 std::vector<std::filesystem::path> TurntableScanner::Files() const {

@@ -61,6 +61,9 @@ class TurntableScanner final : public Scanner {
   std::vector<Placement> placements_;
 };
 
+// From clean points in memory: sets aside what is off each plane, and compresses the rest.
+Result<std::unique_ptr<TurntableScanner>> CompressTurntable(const TurntableDeclaration& declaration,
+                                                            const Turntable& model, const std::vector<RawScan>& scans);
 Result<std::unique_ptr<Scanner>> LoadTurntable(const Dataset& dataset);
 Result<std::unique_ptr<Scanner>> ReloadTurntable(const Dataset& dataset, const Json& data, const std::string& file);
 Result<int64_t> TransformTurntable(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);

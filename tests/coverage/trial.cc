@@ -1,0 +1,89 @@
+#include "tests/coverage/trial.h"
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <thread>
+#include "models/turntable/turntable_scanner.h"
+#include "solver/uncertainty/coverage.h"
+
+namespace scancal::coverage {
+namespace {
+
+std::vector<RawScan> CleanScans(const std::vector<SimulatedPlacement>& placements) {
+  std::vector<RawScan> scans;
+  for (const SimulatedPlacement& placement : placements) {
+    RawScan& scan = scans.emplace_back();
+    scan.name = placement.name;
+    for (const SimulatedProfile& from : placement.profiles) {
+      RawProfile profile{static_cast<double>(scan.profiles.size()), from.alpha, {}, {}, {}};
+      for (size_t i = 0; i < from.y.size(); ++i) {
+        if (std::isnan(from.y[i])) continue;
+        profile.y.push_back(from.y[i]);
+        profile.z.push_back(from.z[i]);
+      }
+      scan.missing += static_cast<double>(from.y.size() - profile.y.size());
+      if (!profile.y.empty()) scan.profiles.push_back(std::move(profile));
+    }
+    Clean(&scan);
+  }
+  return scans;
+}
+
+Turntable Declared(const Row& row) {
+  Turntable model(Turntable::Residuals::kDepth);
+  for (int k = 0; k < kFormModes && row.declared_form > 0; ++k) {
+    model.quantity(Turntable::kForm + k).role = Role::kConsider;
+    model.quantity(Turntable::kForm + k).u = row.declared_form;
+  }
+  return model;
+}
+
+}  // namespace
+
+Trial Try(const Row& row, const Oracle& oracle, uint64_t seed) {
+  static const double k = CoverageFactor(0.95, std::numeric_limits<double>::infinity());
+  TurntableScene scene = row.scene;
+  scene.seed = seed;
+  const std::vector<SimulatedPlacement> placements = SimulateTurntable(scene);
+  TurntableDeclaration declaration;
+  declaration.search = scene.search;
+  Trial trial;
+  const auto scanner = CompressTurntable(declaration, Declared(row), CleanScans(placements));
+  if (!scanner.ok()) {
+    trial.unreliable.push_back(scanner.error().message);
+    return trial;
+  }
+  trial.oracle = oracle.Ask((*scanner)->placements());
+  const Result<Calibration> result = (*scanner)->Calibrate({});
+  if (!result.ok()) {
+    trial.unreliable.push_back(result.error().message);
+    return trial;
+  }
+  const Parameter &M = *result->Find("M"), &N = *result->Find("N");
+  trial.error = {M.value - scene.pose.M, N.value - scene.pose.N};
+  trial.U = {M.U, N.U};
+  trial.U_naive = k * Eigen::Vector2d(M.u_naive, N.u_naive);
+  trial.U_clustered = k * Eigen::Vector2d(M.u_clustered, N.u_clustered);
+  trial.unreliable = result->unreliable;
+  trial.warnings = result->warnings;
+  return trial;
+}
+
+std::vector<Trial> TryAll(const Row& row, size_t number, size_t sets, int threads, const std::function<void()>& done) {
+  const Oracle oracle(row.scene);
+  std::vector<Trial> trials(sets);
+  std::atomic<size_t> next = 0;
+  const auto work = [&] {
+    for (size_t set = next++; set < sets; set = next++) {
+      trials[set] = Try(row, oracle, (static_cast<uint64_t>(number) << 32) + set);
+      if (done) done();
+    }
+  };
+  std::vector<std::jthread> others;
+  for (int k = 1; k < threads; ++k) others.emplace_back(work);
+  work();
+  others.clear();  // joins
+  return trials;
+}
+
+}  // namespace scancal::coverage
