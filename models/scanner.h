@@ -10,12 +10,14 @@
 #include "io/result.h"
 #include "solver/calibration.h"
 #include "solver/comparison.h"
+#include "solver/uncertainty/resampling.h"
 
 namespace scancal {
 
 struct RefineChoice {
   std::string residual;  // a model's name for one of its residuals; empty: the headline
   int max_iterations = 100;
+  MonteCarloChoice monte_carlo{};
 };
 
 // A scanner with its data loaded and compressed.

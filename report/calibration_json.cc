@@ -1,5 +1,6 @@
 #include "report/calibration_json.h"
 #include <cmath>
+#include "report/montecarlo_json.h"
 
 namespace scancal {
 namespace {
@@ -21,6 +22,7 @@ Json ParameterJson(const Parameter& p) {
   json["u_naive"] = Number(p.u_naive);
   json["u_clustered"] = Number(p.u_clustered);
   json["u_jackknife"] = p.u_jackknife > 0 ? Number(p.u_jackknife) : Json(nullptr);
+  json["u_bootstrap"] = p.u_bootstrap > 0 ? Number(p.u_bootstrap) : Json(nullptr);
   return json;
 }
 
@@ -101,7 +103,7 @@ Json ToJson(const Calibration& c) {
   json["compare"] = Json::array();
   json["surface"] = Json::object();
   json["jackknife"] = JackknifeJson(c);
-  json["montecarlo"] = Json::object();
+  json["montecarlo"] = ToJson(c.monte_carlo);
   json["residuals"] = Json::object();
   json["volume"] = Json::object();
   json["data"] = {{"factors", Json::array()}, {"segments", ""}};
@@ -135,6 +137,9 @@ Result<Calibration> CalibrationFromJson(const Json& json, const std::string& fil
     Parameter& parameter = result.parameters.emplace_back();
     parameter.name = name;
     parameter.value = each["value"];
+  }
+  if (json.contains("montecarlo")) {
+    SCANCAL_ASSIGN_OR_RETURN(result.monte_carlo, MonteCarloFromJson(json["montecarlo"], file));
   }
   return result;
 }

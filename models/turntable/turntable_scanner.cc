@@ -162,6 +162,9 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
   // Within a profile the plain residual repeats as the depth does, seen at an angle: its pure error is not comparable.
   Calibration result = Summarize(fit.solution, fit.sigma, plane ? PureError{} : Pooled(placements_));
   result.lack_of_fit.pure_error_sigma = Pooled(placements_).sigma();
+  Progress progress("Monte Carlo");
+  AddResampling(
+      fit.solution, {}, choice.monte_carlo, [&](double done) { progress.Show(done); }, &result);
   result.model = kTurntable.name;
   result.name = declaration_.dataset.name;
   result.residual = plane ? "plane" : "depth";
