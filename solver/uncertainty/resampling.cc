@@ -41,7 +41,7 @@ void AddHistogram(std::span<const double> trials, MonteCarloParameter* parameter
     ++parameter->counts[width > 0 ? std::min(kBins - 1, static_cast<int>((x - *least) / width)) : 0];
 }
 
-// What Monte Carlo says of `value +- U`; summary counts the trials.
+// All trials that were asked for, or as many as two digits take; summary counts them.
 AdaptiveSample Sample(const Solution& solution, const VarianceDof& variance_dof, const MonteCarloChoice& choice,
                       const std::function<void(double)>& progress, std::span<const GumInterval> gum,
                       MonteCarloSummary* summary) {
