@@ -11,13 +11,15 @@
 #include "io/result.h"
 #include "solver/calibration.h"
 #include "solver/comparison.h"
+#include "solver/uncertainty/resampling.h"
 
 namespace scancal {
 
 struct RefineChoice {
-  std::string residual;  // a model's name for one of its residuals; empty: the headline
+  std::string residual;        // a model's name for one of its residuals; empty: the headline
   bool equal_weights = false;  // in place of weights from the estimated variances
   int max_iterations = 100;
+  MonteCarloChoice monte_carlo{};
 };
 
 // A scanner with its data loaded and compressed.

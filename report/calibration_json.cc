@@ -1,5 +1,6 @@
 #include "report/calibration_json.h"
 #include <cmath>
+#include "report/montecarlo_json.h"
 
 namespace scancal {
 namespace {
@@ -21,6 +22,7 @@ Json ParameterJson(const Parameter& p) {
   json["u_naive"] = Number(p.u_naive);
   json["u_clustered"] = Number(p.u_clustered);
   json["u_jackknife"] = p.u_jackknife > 0 ? Number(p.u_jackknife) : Json(nullptr);
+  json["u_bootstrap"] = p.u_bootstrap > 0 ? Number(p.u_bootstrap) : Json(nullptr);
   return json;
 }
 
@@ -133,7 +135,7 @@ Json ToJson(const Calibration& c) {
   json["compare"] = Json::array();
   json["surface"] = Json::object();
   json["jackknife"] = JackknifeJson(c);
-  json["montecarlo"] = Json::object();
+  json["montecarlo"] = ToJson(c.monte_carlo);
   json["residuals"] = {{"targets", Json::array()}};
   for (const TargetSummary& target : c.targets) json["residuals"]["targets"].push_back(ResidualsJson(target));
   json["volume"] = Json::object();
@@ -174,6 +176,9 @@ Result<Calibration> CalibrationFromJson(const Json& json, const std::string& fil
       if (each.is_object() && each.contains("file") && each["file"].is_string() && each.contains("sha256") &&
           each["sha256"].is_string())
         result.inputs.push_back({each["file"], each["sha256"]});
+  if (json.contains("montecarlo")) {
+    SCANCAL_ASSIGN_OR_RETURN(result.monte_carlo, MonteCarloFromJson(json["montecarlo"], file));
+  }
   return result;
 }
 

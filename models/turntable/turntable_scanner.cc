@@ -180,6 +180,8 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
   if (!plane && !choice.residual.empty() && choice.residual != "depth")
     return Error{"residual: found \"" + choice.residual + "\", expected depth or plane"};
   const bool weighted = !plane && !choice.equal_weights;
+  if (!weighted && choice.monte_carlo.trials > 0)
+    return Error{"montecarlo: found equal weights, expected estimated ones: only they say how large all noise is"};
   SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
   const auto began = std::chrono::steady_clock::now();
   TurntableFit fit = Fit(start.pose, plane ? Turntable::Residuals::kPlane : Turntable::Residuals::kDepth, {}, {},
@@ -191,6 +193,9 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
   // Within a profile the plain residual repeats as the depth does, seen at an angle: its pure error is not comparable.
   Calibration result = Summarize(fit.solution, plane ? PureError{} : Pooled(placements_));
   result.lack_of_fit.pure_error_sigma = Pooled(placements_).sigma();
+  Progress progress("Monte Carlo");
+  AddResampling(
+      fit.solution, choice.monte_carlo, [&](double done) { progress.Show(done); }, &result);
   result.model = kTurntable.name;
   result.name = declaration_.dataset.name;
   result.residual = plane ? "plane" : "depth";

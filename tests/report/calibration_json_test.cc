@@ -8,6 +8,7 @@ namespace scancal {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -146,12 +147,77 @@ TEST(CalibrationJsonTest, OtherDocumentsAreErrorsNotCrashes) {
         R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [5]})",
         R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [{"name": "M"}]})",
         R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [{"name": "M", "value": "1"}]})",
-        R"({"scancal": 1, "model": "turntable", "status": 5, "parameters": []})"}) {
+        R"({"scancal": 1, "model": "turntable", "status": 5, "parameters": []})",
+        R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [], "montecarlo": 5})",
+        R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [], "montecarlo": {"trials": "1"}})",
+        R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [], "montecarlo": {"trials": 1}})"}) {
     const auto calibration = CalibrationFromJson(Json::parse(text), "some.json");
     ASSERT_FALSE(calibration.ok()) << text;
     EXPECT_THAT(calibration.error().message, AllOf(StartsWith("some.json: expected "), HasSubstr("calibration.json?")))
         << text;
   }
+}
+
+MonteCarloSummary SomeMonteCarlo() {
+  MonteCarloSummary summary;
+  summary.trials = 10'000;
+  summary.failed = 3;
+  summary.seed = 18'446'744'073'709'551'615u;
+  summary.parameters = {
+      {"M", 123.0023, 0.0112, 122.9801, 123.0239, 122.9801, 123.0241, 5e-3, "PASS", {122, 123, 124}, {4000, 5997}},
+      {"N", 409.1, 0.02, 409.06, 409.14, 409.06, std::numeric_limits<double>::infinity(), 5e-3, "FAIL", {}, {}}};
+  return summary;
+}
+
+TEST(CalibrationJsonTest, TheMonteCarloIsEmptyOrWhole) {
+  Calibration c = SomeCalibration();
+  EXPECT_EQ(ToJson(c)["montecarlo"], Json::object());
+  c.monte_carlo = SomeMonteCarlo();
+  const Json json = Json::parse(ToJson(c).dump())["montecarlo"];
+  EXPECT_EQ(json["trials"], 10'000);
+  EXPECT_EQ(json["failed"], 3);
+  EXPECT_EQ(json["seed"], c.monte_carlo.seed);
+  EXPECT_EQ(json["digits"], 1);
+  EXPECT_EQ(json["stable"], true);
+  const Json& m = json["parameters"][0];
+  EXPECT_EQ(m["name"], "M");
+  EXPECT_EQ(m["mean"], 123.0023);
+  EXPECT_EQ(m["u"], 0.0112);
+  EXPECT_EQ(m["low"], 122.9801);
+  EXPECT_EQ(m["high"], 123.0239);
+  EXPECT_EQ(m["gum_low"], 122.9801);
+  EXPECT_EQ(m["gum_high"], 123.0241);
+  EXPECT_EQ(m["tolerance"], 5e-3);
+  EXPECT_EQ(m["verdict"], "PASS");
+  EXPECT_EQ(m["histogram"]["edges"], Json({122.0, 123.0, 124.0}));
+  EXPECT_EQ(m["histogram"]["counts"], Json({4000, 5997}));
+  EXPECT_TRUE(json["parameters"][1]["gum_high"].is_null());
+
+  const auto back = CalibrationFromJson(Json::parse(ToJson(c).dump()), "f");
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back->monte_carlo.seed, c.monte_carlo.seed);
+  ASSERT_EQ(back->monte_carlo.parameters.size(), 2u);
+  EXPECT_EQ(back->monte_carlo.parameters[0].high, 123.0239);
+  EXPECT_EQ(back->monte_carlo.parameters[0].verdict, "PASS");
+  EXPECT_EQ(back->monte_carlo.parameters[0].edges, c.monte_carlo.parameters[0].edges);
+  EXPECT_EQ(back->monte_carlo.parameters[0].counts, c.monte_carlo.parameters[0].counts);
+  EXPECT_TRUE(std::isnan(back->monte_carlo.parameters[1].gum_high));
+  c.monte_carlo = {};
+  EXPECT_EQ(CalibrationFromJson(ToJson(c), "f")->monte_carlo.trials, 0);
+}
+
+TEST(TextTest, TheMonteCarloStandsBesideValueAndU) {
+  Calibration c = SomeCalibration();
+  EXPECT_THAT(ToText(c), Not(HasSubstr("Monte Carlo")));
+  c.monte_carlo = SomeMonteCarlo();
+  EXPECT_THAT(ToText(c),
+              AllOf(HasSubstr("Monte Carlo: 10000 trials, seed 18446744073709551615; value +- U validated to "
+                              "one digit of u (JCGM 101, clause 8)\n"),
+                    ContainsRegex("M +123.002 +mm +0.011 +122.980 +123.024 +122.980 +123.024 +0.0050 +PASS"),
+                    ContainsRegex("N .*infinite .*FAIL"), Not(HasSubstr("too few"))));
+  c.monte_carlo.digits = 2;
+  c.monte_carlo.stable = false;
+  EXPECT_THAT(ToText(c), AllOf(HasSubstr("two digits"), HasSubstr("too few")));
 }
 
 TEST(TextTest, TheReportNamesEverythingThatMatters) {
