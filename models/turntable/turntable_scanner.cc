@@ -210,7 +210,7 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
     TargetSummary& target = result.targets[t];
     target.missing = placements_[t].missing;
     target.set_aside = placements_[t].set_aside;
-    target.residuals = SummaryOf(placements_[t].lag_sums, placements_[t].histogram);
+    target.residuals = ResidualsOf(placements_[t]);
     const auto [normal, distance] = fit.Plane(t);
     target.geometry = {{"normal", {normal[0], normal[1], normal[2]}}, {"distance", {distance}}};
   }
