@@ -80,7 +80,7 @@ void JudgeNeighbours(const Solution& solution, Calibration* result) {
   const Neighbours neighbours = CorrelationOfNeighbours(solution.problem, solution.fit.estimate, solution.linear);
   result->neighbours = neighbours.correlation;
   if (!solution.problem.With({Scope::kTarget}, Role::kConsider).empty()) return;  // that looks the same
-  const double significant = kFarFromIndependent / std::sqrt(std::max(1.0, neighbours.pairs));
+  const double significant = kFarFromIndependent * neighbours.standard_error;
   if (neighbours.correlation < std::max(significant, kLeastCorrelation)) return;
   result->warnings.push_back(fmt::format(
       "neighbouring views are correlated ({:.2g}), but count as independent: as far as that is neither form "

@@ -1,12 +1,12 @@
 #include "solver/uncertainty/neighbours.h"
+#include <cmath>
 #include "solver/weigh.h"
 
 namespace scancal {
 
 Neighbours CorrelationOfNeighbours(const Problem& problem, const Estimate& fit, const Linearization& linear) {
   const std::vector<int> of_view = problem.With({Scope::kView}, Role::kConsider);
-  double products = 0, squares = 0;
-  Neighbours result;
+  double products = 0, squares_of_products = 0, squares = 0;
   for (size_t t = 0; t < problem.targets.size(); ++t) {
     const std::vector<double> values = Values(problem, fit, t);
     const LinearTarget& target = linear.targets[t];
@@ -19,13 +19,13 @@ Neighbours CorrelationOfNeighbours(const Problem& problem, const Estimate& fit, 
       squares += z.squaredNorm();
       if (before.size()) {
         products += z.dot(before);
-        result.pairs += static_cast<double>(z.size());
+        squares_of_products += z.dot(before) * z.dot(before);
       }
       before = z;
     }
   }
-  if (squares > 0) result.correlation = products / squares;
-  return result;
+  if (!(squares > 0)) return {};
+  return {products / squares, std::sqrt(squares_of_products) / squares};
 }
 
 }  // namespace scancal

@@ -19,6 +19,7 @@ constexpr double kLargestStep = 25;      // a variance changes by no more than t
 constexpr double kAtZero = 1e-4;         // of a standard error: a variance below this and falling is zero
 constexpr double kConfounded = 1e-8;     // of the largest eigenvalue of the scaled information
 constexpr double kMoreThanDeclared = 3;  // standard errors
+constexpr double kMatters = 0.1;         // of a variance: 5 % of u
 
 struct Sources {
   std::vector<std::string> names;
@@ -247,8 +248,9 @@ std::vector<std::string> ReleaseExceeded(Problem* problem, Estimate at, double l
   for (const int k : declared) {
     Quantity& quantity = problem->quantities[k];
     const Eigen::Index i = IndexOf(quantity.Source(), told.sources);
-    const double more = told.variance[i] - quantity.u * quantity.u;
-    if (!(more > kMoreThanDeclared * std::sqrt(told.covariance(i, i)))) continue;
+    const double declared_variance = quantity.u * quantity.u;
+    const double clearly = std::max(kMoreThanDeclared * std::sqrt(told.covariance(i, i)), kMatters * declared_variance);
+    if (!(told.variance[i] - declared_variance > clearly)) continue;
     quantity.role = Role::kEstimate;
     if (larger.empty() || larger.back() != quantity.Source()) larger.push_back(quantity.Source());
   }
