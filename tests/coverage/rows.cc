@@ -21,6 +21,18 @@ Row Jitter(double arcseconds) {
   return row;
 }
 
+Row Form(double microns, FormKind kind) {
+  Row row{fmt::format("form {:g} um", microns), White()};
+  row.scene.form = row.declared_form = microns * kMicron;
+  row.scene.form_kind = kind;
+  row.widest = 1.3;
+  if (kind == FormKind::kModes) return row;
+  row.name += ", other functions";
+  row.most = 1;
+  row.widest = std::numeric_limits<double>::infinity();
+  return row;
+}
+
 Row LineCorrelation(double points) {
   Row row{fmt::format("line correlation {:g} points", points), White()};
   row.scene.line_correlation = points;
@@ -35,7 +47,27 @@ std::vector<Row> Rows() {
   white.least = 0.935;
   white.most = 0.965;
   white.widest = 1.05;
-  return {white, Jitter(5), Jitter(20), LineCorrelation(40), LineCorrelation(130)};
+  Row all{"all of these, 2 % outliers", White()};
+  all.scene.encoder_jitter = 20 * kArcsecond;
+  all.scene.form = all.declared_form = 5 * kMicron;
+  all.scene.line_correlation = 40;
+  all.scene.outliers = 0.02;
+  all.least = 0.92;
+  all.most = 0.98;
+  all.widest = 1.4;
+  using enum FormKind;
+  return {white,
+          Jitter(5),
+          Jitter(20),
+          Form(2, kModes),
+          Form(5, kModes),
+          Form(15, kModes),
+          Form(2, kSmooth),
+          Form(5, kSmooth),
+          Form(15, kSmooth),
+          LineCorrelation(40),
+          LineCorrelation(130),
+          all};
 }
 
 }  // namespace scancal::coverage
