@@ -1,5 +1,6 @@
 #include "report/calibration_json.h"
 #include <cmath>
+#include "report/uncertainty_json.h"
 
 namespace scancal {
 namespace {
@@ -76,6 +77,18 @@ Json BudgetJson(const Calibration& calibration) {
   return lines;
 }
 
+Json VolumeJson(const UncertaintyMap& volume) {
+  if (volume.rows.empty()) return Json::object();
+  Json units = Json::array(), rows = Json::array();
+  for (const Unit unit : volume.units) units.push_back(Name(unit));
+  for (const std::vector<double>& row : volume.rows) {
+    Json numbers = Json::array();
+    for (const double number : row) numbers.push_back(Number(number));
+    rows.push_back(std::move(numbers));
+  }
+  return {{"columns", volume.columns}, {"units", units}, {"rows", rows}};
+}
+
 Json JackknifeJson(const Calibration& calibration) {
   Json list = Json::array();
   for (size_t t = 0; t < calibration.jackknife.size(); ++t)
@@ -120,7 +133,7 @@ Json ToJson(const Calibration& c) {
   json["jackknife"] = JackknifeJson(c);
   json["montecarlo"] = Json::object();
   json["residuals"] = Json::object();
-  json["volume"] = Json::object();
+  json["volume"] = VolumeJson(c.volume);
   json["data"] = {{"factors", Json::array()}, {"segments", ""}};
   json["converged"] = c.converged;
   json["iterations"] = c.iterations;
@@ -153,6 +166,7 @@ Result<Calibration> CalibrationFromJson(const Json& json, const std::string& fil
     parameter.name = name;
     parameter.value = each["value"];
   }
+  SCANCAL_RETURN_IF_ERROR(ReadUncertainties(json, file, &result));
   return result;
 }
 

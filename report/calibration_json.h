@@ -8,7 +8,7 @@
 namespace scancal {
 
 Json ToJson(const Calibration& calibration);
-// What a later command needs of it: model, status, parameters. file: for messages.
+// What a later command needs of it: model, status, parameters, and what uncertainty_json.h reads. file: for messages.
 Result<Calibration> CalibrationFromJson(const Json& json, const std::string& file);
 
 }  // namespace scancal

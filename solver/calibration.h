@@ -64,6 +64,15 @@ struct JointRegion {  // all estimated parameters together, coverage 95 %
   double k = 0, dof = 0;
 };
 
+// Points on a grid of readings that spans what was scanned, with the expanded uncertainties (95 %) that the calibration
+// gives them. Columns: the numbers of a reading, "X", "Y", "Z", then U along these and in the direction that is known
+// least.
+struct UncertaintyMap {
+  std::vector<std::string> columns;
+  std::vector<Unit> units;
+  std::vector<std::vector<double>> rows;
+};
+
 struct InputFile {
   std::string file, sha256;
 };
@@ -85,6 +94,7 @@ struct Calibration {
   std::map<std::string, double> weakest;  // components of the least determined direction
   std::vector<BudgetLine> budget;
   std::vector<std::vector<double>> jackknife;  // per target: the estimated parameters without it
+  UncertaintyMap volume;
   int iterations = 0;
   bool converged = false;
   double seconds = 0;
