@@ -1,6 +1,7 @@
 #include "models/turntable/smooth_columns.h"
 #include <Eigen/QR>
 #include <limits>
+#include "models/turntable/volume.h"
 
 namespace scancal {
 namespace {
@@ -77,15 +78,12 @@ void AddForm(const std::vector<Profile>& profiles, const TurntablePose& pose, co
 }
 
 void AddBend(const std::vector<Placement>& placements, std::vector<Turntable::Target>* targets) {
-  Bounds depth;
-  for (const Placement& placement : placements)
-    for (const Profile& profile : placement.profiles)
-      for (const PseudoPoint& p : PointsOf(profile)) depth.Add(Eigen::Array2d(p.y, 0));
+  const ScannedVolume volume = VolumeOf(placements);
   for (size_t t = 0; t < placements.size(); ++t) {
     for (size_t k = 0; k < placements[t].profiles.size(); ++k) {
       Turntable::View& view = (*targets)[t].views[k];
       view.bend = AsLine(placements[t].profiles[k], view, 1, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
-        const double eta = depth.Scaled({p.y, 0})[0];
+        const double eta = volume.Eta(p.y);
         return Eigen::RowVectorXd::Constant(1, eta * eta);
       });
     }
