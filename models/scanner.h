@@ -7,9 +7,11 @@
 #include <vector>
 #include "io/dataset.h"
 #include "io/point_cloud.h"
+#include "io/point_list.h"
 #include "io/result.h"
 #include "solver/calibration.h"
 #include "solver/comparison.h"
+#include "solver/propagation.h"
 
 namespace scancal {
 
@@ -42,6 +44,9 @@ struct ScannerKind {
   Result<std::unique_ptr<Scanner>> (*load)(const Dataset& dataset);
   // All points of the data set's scans in the frame of the calibration, streamed; returns their number.
   Result<int64_t> (*transform)(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
+  // Points as the scanner shows them, in the frame of the calibration with their uncertainty; distances: of each from
+  // the one before.
+  Result<Propagation> (*propagate)(const Calibration& calibration, const PointRequest& points, bool distances);
 };
 
 }  // namespace scancal

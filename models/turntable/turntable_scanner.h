@@ -62,7 +62,8 @@ class TurntableScanner final : public Scanner {
 
 Result<std::unique_ptr<Scanner>> LoadTurntable(const Dataset& dataset);
 Result<int64_t> TransformTurntable(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
+Result<Propagation> PropagateTurntable(const Calibration& calibration, const PointRequest& points, bool distances);
 
-inline constexpr ScannerKind kTurntable = {"turntable", &LoadTurntable, &TransformTurntable};
+inline constexpr ScannerKind kTurntable = {"turntable", &LoadTurntable, &TransformTurntable, &PropagateTurntable};
 
 }  // namespace scancal
