@@ -8,9 +8,11 @@
 #include "io/dataset.h"
 #include "io/json_file.h"
 #include "io/point_cloud.h"
+#include "io/point_list.h"
 #include "io/result.h"
 #include "solver/calibration.h"
 #include "solver/comparison.h"
+#include "solver/propagation.h"
 #include "solver/uncertainty/resampling.h"
 
 namespace scancal {
@@ -50,6 +52,9 @@ struct ScannerKind {
   Result<std::unique_ptr<Scanner>> (*reload)(const Dataset& dataset, const Json& data, const std::string& file);
   // All points of the data set's scans in the frame of the calibration, streamed; returns their number.
   Result<int64_t> (*transform)(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
+  // Points as the scanner shows them, in the frame of the calibration with their uncertainty; distances: of each from
+  // the one before.
+  Result<Propagation> (*propagate)(const Calibration& calibration, const PointRequest& points, bool distances);
 };
 
 }  // namespace scancal

@@ -1,6 +1,7 @@
 #include "report/calibration_json.h"
 #include <cmath>
 #include "report/montecarlo_json.h"
+#include "report/uncertainty_json.h"
 
 namespace scancal {
 namespace {
@@ -92,6 +93,18 @@ Json BudgetJson(const Calibration& calibration) {
   return lines;
 }
 
+Json VolumeJson(const UncertaintyMap& volume) {
+  if (volume.rows.empty()) return Json::object();
+  Json units = Json::array(), rows = Json::array();
+  for (const Unit unit : volume.units) units.push_back(Name(unit));
+  for (const std::vector<double>& row : volume.rows) {
+    Json numbers = Json::array();
+    for (const double number : row) numbers.push_back(Number(number));
+    rows.push_back(std::move(numbers));
+  }
+  return {{"columns", volume.columns}, {"units", units}, {"rows", rows}};
+}
+
 Json JackknifeJson(const Calibration& calibration) {
   Json list = Json::array();
   for (size_t t = 0; t < calibration.jackknife.size(); ++t)
@@ -138,7 +151,7 @@ Json ToJson(const Calibration& c) {
   json["montecarlo"] = ToJson(c.monte_carlo);
   json["residuals"] = {{"targets", Json::array()}};
   for (const TargetSummary& target : c.targets) json["residuals"]["targets"].push_back(ResidualsJson(target));
-  json["volume"] = Json::object();
+  json["volume"] = VolumeJson(c.volume);
   json["data"] = Json::object();
   json["converged"] = c.converged;
   json["iterations"] = c.iterations;
@@ -179,6 +192,7 @@ Result<Calibration> CalibrationFromJson(const Json& json, const std::string& fil
   if (json.contains("montecarlo")) {
     SCANCAL_ASSIGN_OR_RETURN(result.monte_carlo, MonteCarloFromJson(json["montecarlo"], file));
   }
+  SCANCAL_RETURN_IF_ERROR(ReadUncertainties(json, file, &result));
   return result;
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include "report/text_table.h"
 
 namespace scancal {
@@ -91,6 +92,26 @@ std::string MonteCarloText(const Calibration& c) {
   return text;
 }
 
+// The range of the largest U over the volume, and where it is largest.
+std::string VolumeText(const UncertaintyMap& volume) {
+  if (volume.rows.empty()) return "";
+  const auto by_U = [](const auto& a, const auto& b) { return a.back() < b.back(); };
+  const auto [least, most] = std::minmax_element(volume.rows.begin(), volume.rows.end(), by_U);
+  const std::string from = Significant(least->back(), 2), to = Significant(most->back(), 2);
+  std::string text = "expanded uncertainty of a measured point over the scanned volume: " + from;
+  if (from != to) {
+    text += " to " + to + " mm, largest at";
+    for (size_t k = 0; k < volume.columns.size() && volume.columns[k] != "X"; ++k) {
+      const bool angle = volume.units[k] == Unit::kRad;
+      text += (k ? ", " : " ") + volume.columns[k] + " = " +
+              Significant(angle ? (*most)[k] * 180 / std::numbers::pi : (*most)[k], 3) + (angle ? " deg" : " mm");
+    }
+  } else {
+    text += " mm throughout";
+  }
+  return text + "; the noise of a single reading is not in it\n";
+}
+
 bool HasDeclared(const Calibration& c) {
   return std::any_of(c.budget.begin(), c.budget.end(), [](const BudgetLine& line) { return line.type == 'B'; });
 }
@@ -123,6 +144,7 @@ std::string ToText(const Calibration& c) {
   if (c.joint.k > 0)
     text += "k of " + std::to_string(c.estimated.size()) +
             " quantities jointly (95 % region): " + Significant(c.joint.k, 3) + "; of one: see the table\n";
+  text += VolumeText(c.volume);
   text += "\n";
   for (const std::string& warning : c.warnings) text += "warning: " + warning + "\n";
   for (const std::string& reason : c.unreliable) text += "unreliable: " + reason + "\n";

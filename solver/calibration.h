@@ -97,6 +97,15 @@ struct MonteCarloSummary {
   std::vector<MonteCarloParameter> parameters;
 };
 
+// Points on a grid of readings that spans what was scanned, with the expanded uncertainties (95 %) that the calibration
+// gives them. Columns: the numbers of a reading, "X", "Y", "Z", then U along these and in the direction that is known
+// least.
+struct UncertaintyMap {
+  std::vector<std::string> columns;
+  std::vector<Unit> units;
+  std::vector<std::vector<double>> rows;
+};
+
 struct HashedFile {
   std::string file, sha256;
 };
@@ -120,6 +129,7 @@ struct Calibration {
   std::vector<BudgetLine> budget;
   std::vector<std::vector<double>> jackknife;  // per target: the estimated parameters without it
   MonteCarloSummary monte_carlo;
+  UncertaintyMap volume;
   int iterations = 0;
   bool converged = false;
   double seconds = 0;

@@ -9,6 +9,7 @@
 #include "models/parts/median.h"
 #include "models/turntable/smooth_columns.h"
 #include "models/turntable/verdicts.h"
+#include "models/turntable/volume.h"
 
 namespace scancal {
 namespace {
@@ -219,6 +220,7 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
     result.warnings.push_back(
         "point-to-plane residuals are biased by the noise along depth; the depth residual is not");
   JudgeTurntable(box, placements_, start, fit, &result);
+  AddVolume(placements_, &result);
   return result;
 }
 

@@ -37,7 +37,7 @@ std::vector<std::string> HelpFlags(const std::string& command) {
 TEST(HelpTest, WithoutArgumentsTheCommandsAreListed) {
   const Outcome outcome = RunScancal({});
   EXPECT_EQ(outcome.exit_code, 1);
-  for (const char* command : {"refine", "montecarlo", "compare", "simulate", "transform"})
+  for (const char* command : {"refine", "montecarlo", "compare", "simulate", "transform", "propagate"})
     EXPECT_THAT(outcome.out, HasSubstr("\n  " + std::string(command) + " "));
   EXPECT_THAT(outcome.out, Not(HasSubstr("--flagfile")));
 }
@@ -60,6 +60,7 @@ TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
   EXPECT_THAT(HelpFlags("montecarlo"), ElementsAre("out", "trials", "seed", "digits", "threads"));
   EXPECT_THAT(HelpFlags("compare"), ElementsAre("surface"));
   EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out"));
+  EXPECT_THAT(HelpFlags("propagate"), UnorderedElementsAre("point", "points_file", "units", "distance", "out"));
   EXPECT_THAT(HelpFlags("simulate"),
               UnorderedElementsAre("out", "M", "N", "tilt_x", "tilt_y", "placements", "profiles", "points", "sweep",
                                    "line_length", "noise", "line_correlation", "encoder_jitter", "form", "form_kind",
