@@ -21,13 +21,16 @@ Row Jitter(double arcseconds) {
   return row;
 }
 
+// The specification wants other smooth functions held as well. Bent plates are not: their form is nearly all in the
+// mode of degree 2 along the longer side, which M and N feel most, and of which the declared ensemble has only a
+// quarter.
 Row Form(double microns, FormKind kind) {
   Row row{fmt::format("form {:g} um", microns), White()};
   row.scene.form = row.declared_form = microns * kMicron;
   row.scene.form_kind = kind;
   row.widest = 1.3;
   if (kind == FormKind::kModes) return row;
-  row.name += ", other functions";
+  row.name += kind == FormKind::kSmooth ? ", other functions" : ", bent plates";
   row.most = 1;
   row.widest = std::numeric_limits<double>::infinity();
   return row;
@@ -65,6 +68,7 @@ std::vector<Row> Rows() {
           Form(2, kSmooth),
           Form(5, kSmooth),
           Form(15, kSmooth),
+          Form(5, kBent),
           LineCorrelation(40),
           LineCorrelation(130),
           all};
