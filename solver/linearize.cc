@@ -93,4 +93,11 @@ Estimate GaussNewtonStep(const Linearization& linear) {
   return step;
 }
 
+double StepLength(const Linearization& linear) {
+  double squared = linear.rhs.squaredNorm();
+  for (const LinearTarget& target : linear.targets)
+    if (target.q.size()) squared += (target.q.transpose() * target.r).squaredNorm();
+  return std::sqrt(squared);
+}
+
 }  // namespace scancal

@@ -39,4 +39,8 @@ Linearization Linearize(const Problem& problem, const Estimate& at, Storey store
 // The step that minimises the linearised sum of squares. Not finite where a quantity is not determined.
 Estimate GaussNewtonStep(const Linearization& linear);
 
+// |J step| of that step, in units of the noise of one row: how far the residuals are from orthogonal to all columns of
+// J.
+double StepLength(const Linearization& linear);
+
 }  // namespace scancal
