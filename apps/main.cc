@@ -13,7 +13,8 @@ DECLARE_bool(version);
 namespace scancal {
 namespace {
 
-const Command* const kCommands[] = {&kRefineCommand, &kCompareCommand, &kSimulateCommand, &kTransformCommand};
+const Command* const kCommands[] = {&kRefineCommand, &kCompareCommand, &kSimulateCommand, &kTransformCommand,
+                                    &kSelftestCommand};
 std::string command_line;
 
 void PrintOverview() {

@@ -153,8 +153,10 @@ Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& o
     }
     // Length over noise is the relative offset of Bates and Watts (1981): no quantity moves by more of its uncertainty.
     const double length = StepLength(linear), noise = std::sqrt(linear.cost / std::max(1.0, problem.Count()));
-    fit.converged = length <= kNegligible * noise || IsTiny(step, fit.estimate);
-    if (length <= kSettled * noise || (fit.converged && length >= last)) break;
+    const bool tiny = IsTiny(step, fit.estimate);
+    fit.converged = tiny || length <= kNegligible * noise;
+    // A step that is no shorter than the last is rounding; a tiny one is worth its time if it gains two digits.
+    if (length <= kSettled * noise || (fit.converged && length >= (tiny ? 0.01 : 1) * last)) break;
     last = length;
     Estimate next = fit.estimate;
     Add(step, &next);

@@ -37,7 +37,7 @@ std::vector<std::string> HelpFlags(const std::string& command) {
 TEST(HelpTest, WithoutArgumentsTheCommandsAreListed) {
   const Outcome outcome = RunScancal({});
   EXPECT_EQ(outcome.exit_code, 1);
-  for (const char* command : {"refine", "compare", "simulate", "transform"})
+  for (const char* command : {"refine", "compare", "simulate", "transform", "selftest"})
     EXPECT_THAT(outcome.out, HasSubstr("\n  " + std::string(command) + " "));
   EXPECT_THAT(outcome.out, Not(HasSubstr("--flagfile")));
 }
@@ -58,6 +58,7 @@ TEST(HelpTest, VersionIsOneLine) {
 TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
   EXPECT_THAT(HelpFlags("refine"), ElementsAre("out", "residual", "max_iterations"));
   EXPECT_THAT(HelpFlags("compare"), ElementsAre("surface"));
+  EXPECT_THAT(HelpFlags("selftest"), ElementsAre("nist"));
   EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out"));
   EXPECT_THAT(HelpFlags("simulate"),
               UnorderedElementsAre("out", "M", "N", "tilt_x", "tilt_y", "placements", "profiles", "points", "sweep",
