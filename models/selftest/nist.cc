@@ -1,7 +1,9 @@
 #include "models/selftest/nist.h"
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <regex>
+#include <sstream>
 #include "io/message.h"
 #include "io/number.h"
 #include "io/text_lines.h"
@@ -52,8 +54,8 @@ Result<Section> FindSection(const std::string& file, const Lines& lines, const s
 }
 
 std::vector<std::string> Words(const std::string& line) {
-  static const std::regex word(R"(\S+)");
-  return {std::sregex_token_iterator(line.begin(), line.end(), word), {}};
+  std::istringstream stream(line);
+  return {std::istream_iterator<std::string>(stream), {}};
 }
 
 Error WrongLine(const std::string& file, const Lines& lines, size_t number, const std::string& expected) {
