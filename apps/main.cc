@@ -13,8 +13,8 @@ DECLARE_bool(version);
 namespace scancal {
 namespace {
 
-const Command* const kCommands[] = {&kRefineCommand,   &kMonteCarloCommand, &kCompareCommand,
-                                    &kSimulateCommand, &kTransformCommand,  &kPropagateCommand};
+const Command* const kCommands[] = {&kRefineCommand,    &kMonteCarloCommand, &kCompareCommand, &kSimulateCommand,
+                                    &kTransformCommand, &kPropagateCommand,  &kSelftestCommand};
 std::string command_line;
 
 void PrintOverview() {

@@ -98,4 +98,11 @@ void Add(const Estimate& step, Estimate* x) {
   for (size_t t = 0; t < x->targets.size(); ++t) x->targets[t] += step.targets[t];
 }
 
+double StepLength(const Linearization& linear) {
+  double squared = linear.rhs.squaredNorm();
+  for (const LinearTarget& target : linear.targets)
+    if (target.q.size()) squared += (target.q.transpose() * target.r).squaredNorm();
+  return std::sqrt(squared);
+}
+
 }  // namespace scancal

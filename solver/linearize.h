@@ -40,4 +40,8 @@ Linearization Linearize(const Problem& problem, const Estimate& at, Storey store
 Estimate GaussNewtonStep(const Linearization& linear);
 void Add(const Estimate& step, Estimate* x);
 
+// |J step| of that step, in units of the noise of one row: how far the residuals are from orthogonal to all columns of
+// J.
+double StepLength(const Linearization& linear);
+
 }  // namespace scancal

@@ -5,8 +5,9 @@
 namespace scancal {
 namespace {
 
-constexpr int kPolishSteps = 10;
+constexpr int kPolishSteps = 100;     // large residuals let Gauss-Newton gain a fifth of a digit a step
 constexpr double kNegligible = 1e-3;  // of a standard uncertainty
+constexpr double kSettled = 1e-10;    // of a standard uncertainty: nothing is left to gain
 
 // All rows of a target as Ceres sees them: a function of the system's estimated quantities and the target's own.
 class BlocksCost final : public ceres::CostFunction {
@@ -138,27 +139,28 @@ Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& o
     return fit;
   }
   Linearization linear = Linearize(problem, fit.estimate, storey);
+  double last = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kPolishSteps; ++k) {
     const Estimate step = GaussNewtonStep(linear);
     if (!AllFinite(step)) {
       fit.message = "the equations are singular";
       break;
     }
+    // Length over noise is the relative offset of Bates and Watts (1981): no quantity moves by more of its uncertainty.
+    const double length = StepLength(linear), noise = std::sqrt(linear.cost / std::max(1.0, problem.Count()));
+    const bool tiny = IsTiny(step, fit.estimate);
+    fit.converged = tiny || length <= kNegligible * noise;
+    // A step that is no shorter than the last is rounding; a tiny one is worth its time if it gains two digits.
+    if (length <= kSettled * noise || (fit.converged && length >= (tiny ? 0.01 : 1) * last)) break;
+    last = length;
     Estimate next = fit.estimate;
     Add(step, &next);
     Linearization there = Linearize(problem, next, storey);
     ++fit.iterations;
-    // In units of the uncertainty, |factor step| is the length of the step times the noise of one row. Large residuals
-    // may keep Gauss-Newton from settling better than Levenberg-Marquardt did.
-    const double noise = std::sqrt(linear.cost / std::max(1.0, problem.Count()));
-    const bool negligible = (linear.factor * step.system).norm() <= kNegligible * noise;
-    const bool worse = !(there.cost <= linear.cost * (1 + 1e-9) + 1e-300);
-    const bool tiny = IsTiny(step, next);
-    fit.converged = tiny || (negligible && step.system.size() > 0);
-    if (worse) break;
+    // Large residuals may keep Gauss-Newton from settling better than Levenberg-Marquardt did.
+    if (!(there.cost <= linear.cost * (1 + 1e-9) + 1e-300)) break;
     fit.estimate = std::move(next);
     linear = std::move(there);
-    if (tiny) break;
   }
   fit.cost = linear.cost;
   if (!fit.converged && fit.message.empty())

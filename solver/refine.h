@@ -23,7 +23,8 @@ Storey FitStorey(const Problem& problem);
 
 // Minimises the sum of squares of all rows and priors over the estimated quantities of system and target scope. One
 // residual block a target; the targets' own quantities are eliminated (Schur). Ceres' normal equations stop at about
-// 1e-8 of the uncertainty, so Gauss-Newton steps by QR finish. One thread: the same digits everywhere.
+// 1e-8 of the uncertainty, so Gauss-Newton steps by QR finish: until a step is below 1e-10 of the uncertainty, or
+// rounding. One thread: the same digits everywhere.
 Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& options = {});
 
 }  // namespace scancal

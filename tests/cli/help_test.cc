@@ -37,7 +37,7 @@ std::vector<std::string> HelpFlags(const std::string& command) {
 TEST(HelpTest, WithoutArgumentsTheCommandsAreListed) {
   const Outcome outcome = RunScancal({});
   EXPECT_EQ(outcome.exit_code, 1);
-  for (const char* command : {"refine", "montecarlo", "compare", "simulate", "transform", "propagate"})
+  for (const char* command : {"refine", "montecarlo", "compare", "simulate", "transform", "propagate", "selftest"})
     EXPECT_THAT(outcome.out, HasSubstr("\n  " + std::string(command) + " "));
   EXPECT_THAT(outcome.out, Not(HasSubstr("--flagfile")));
 }
@@ -59,6 +59,7 @@ TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
   EXPECT_THAT(HelpFlags("refine"), ElementsAre("out", "residual", "weights", "max_iterations", "montecarlo"));
   EXPECT_THAT(HelpFlags("montecarlo"), ElementsAre("out", "trials", "seed", "digits", "threads"));
   EXPECT_THAT(HelpFlags("compare"), ElementsAre("surface"));
+  EXPECT_THAT(HelpFlags("selftest"), ElementsAre("nist"));
   EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out"));
   EXPECT_THAT(HelpFlags("propagate"), UnorderedElementsAre("point", "points_file", "units", "distance", "out"));
   EXPECT_THAT(HelpFlags("simulate"),

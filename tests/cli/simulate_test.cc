@@ -106,7 +106,7 @@ TEST_F(SimulateTest, FormIsOfItsKind) {
   EXPECT_EQ((*ReadJson(modes / "truth.json"))["one_plate"], true);
   EXPECT_EQ((*ReadJson(smooth / "truth.json"))["form_kind"], "smooth");
   EXPECT_THAT(OneSentence(RunScancal({"simulate", "--form_kind=rough", "--out=" + Path("x").string()})),
-              HasSubstr("--form_kind: found \"rough\", expected modes or smooth"));
+              HasSubstr("--form_kind: found \"rough\", expected modes, smooth or bent"));
 }
 
 TEST_F(SimulateTest, TheSampleGivesItsTruth) {

@@ -137,7 +137,7 @@ TEST_F(VerdictsOfProgramTest, AResultOutsideTheSearchIntervalIsNotTrusted) {
 }
 
 TEST_F(VerdictsOfProgramTest, NoConvergenceIsUnreliable) {
-  // One iteration and ten polishing steps suffice nearly always: not for tilts seen through noise and a narrow sweep.
+  // One iteration and the polishing steps suffice nearly always: not for tilts seen through noise and a narrow sweep.
   const fs::path data = Path("noisy");
   Simulate(data, {"--profiles=40", "--points=20", "--sweep=2", "--noise=1"});
   Append(data / "dataset.yaml", "parameters: {tilt_x: estimate, tilt_y: estimate}\n");

@@ -1,7 +1,7 @@
 // A real lidar on a tilt stand: M 80, N 0 mm nominal, known no better than to some centimetres.
 #include <gmock/gmock.h>
-#include <cstdlib>
 #include "tests/cli/data_set.h"
+#include "tests/real/data_sets.h"
 
 namespace scancal {
 namespace {
@@ -9,12 +9,6 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr char kScan[] = "0_to_pos90_degree.csv";
-
-// The folder of data sets that are not part of the project.
-fs::path DataSets() {
-  const char* const named = std::getenv("SCANCAL_DATASETS");
-  return named ? fs::path(named) : fs::path(SCANCAL_SOURCE_DIR) / ".." / "shared" / "datasets";
-}
 
 class TiltingLidarTest : public CliTest {
  protected:

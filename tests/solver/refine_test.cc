@@ -67,6 +67,51 @@ TEST(Refine, GivesTheSameBitsEveryTime) {
   }
 }
 
+// y = a exp(-b x) at scattered points: residuals so large that Gauss-Newton gains a fifth of a digit a step.
+class DecayModel {
+ public:
+  enum { kAmplitude, kRate };
+  static constexpr int kRowsPerPoint = 1;
+  struct View {
+    double x, y;
+  };
+  struct Target {
+    std::string name = "decay";
+    std::vector<View> views;
+  };
+  explicit DecayModel(double rate)
+      : quantities_{{"amplitude", Unit::kOne, Scope::kSystem, Role::kEstimate, 3, 0, false, ""},
+                    {"rate", Unit::kOne, Scope::kSystem, Role::kEstimate, rate, 0, false, ""}} {}
+  const Quantities& quantities() const { return quantities_; }
+  int Points(const View&) const { return 1; }
+  double Count(const View&) const { return 1; }
+  template <class T>
+  void Residual(const Target&, const View& view, const Seen<T>& q, T* r) const {
+    using std::exp;
+    r[0] = q[kAmplitude] * exp(-q[kRate] * view.x) - view.y;
+  }
+
+ private:
+  Quantities quantities_;
+};
+
+TEST(Refine, GoesOnUntilNothingIsLeftToGainWhateverTheUnit) {
+  double rate_of_one = 0;
+  for (const double unit : {1.0, 1e9}) {
+    DecayModel::Target target;
+    const double y[] = {3, 2, 0, 0, -1, 0};
+    for (int i = 0; i < 6; ++i) target.views.push_back({i * unit, y[i]});
+    const Problem problem = MakeProblem<DecayModel>(std::make_shared<DecayModel>(0.8 / unit), {target});
+    const Fit fit = Refine(problem, NominalStart(problem));
+    EXPECT_TRUE(fit.converged) << fit.message;
+    const Linearization there = Linearize(problem, fit.estimate, Storey::kViews);
+    EXPECT_GT(std::sqrt(there.cost / 6), 0.3);
+    EXPECT_LT(StepLength(there), 1e-9 * std::sqrt(there.cost / 6));
+    if (unit == 1) rate_of_one = fit.estimate.system[1];
+    EXPECT_NEAR(fit.estimate.system[1] * unit / rate_of_one, 1, 1e-9);
+  }
+}
+
 TEST(Observability, NamesWhatHasNoEffectOfItsOwn) {
   LineModel model;
   model.quantity(LineModel::kCurvature).role = Role::kEstimate;

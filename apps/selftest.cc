@@ -1,0 +1,32 @@
+// scancal selftest
+#include "models/selftest/selftest.h"
+#include <gflags/gflags.h>
+#include <cstdio>
+#include "apps/command.h"
+#include "report/text.h"
+
+DEFINE_string(nist, "", "folder with the 27 .dat files of NIST's certified nonlinear regressions, to run these too");
+
+namespace scancal {
+namespace {
+
+int Run(const std::vector<std::string>& arguments) {
+  if (!arguments.empty()) return Complain("selftest takes no argument; the folder of NIST's files is given by --nist");
+  Selftest selftest{OwnCases()};
+  if (FLAGS_nist.empty()) {
+    std::printf("NIST's 27 certified regressions are not run; --nist=FOLDER, with their files, adds them\n\n");
+  } else {
+    const Result<std::vector<SelftestRow>> nist = NistCases(FLAGS_nist);
+    if (!nist.ok()) return Complain(nist.error().message);
+    selftest.rows.insert(selftest.rows.end(), nist->begin(), nist->end());
+  }
+  std::printf("%s", ToText(selftest).c_str());
+  return selftest.ok() ? kTrusted : kUnreliable;
+}
+
+}  // namespace
+
+const Command kSelftestCommand = {
+    "selftest", "", "the program's arithmetic against known answers: digits reached, pass or fail", {{"nist"}}, &Run};
+
+}  // namespace scancal
