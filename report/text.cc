@@ -45,6 +45,23 @@ std::string Targets(const Calibration& c) {
   return table.Text() + reasons;
 }
 
+// Which target moves which parameter, in units of its u.
+std::string LeaveOneOut(const Calibration& c) {
+  if (c.jackknife.empty()) return "";
+  std::vector<std::string> header = {"without target"};
+  for (const std::string& name : c.estimated) header.push_back(name + " moves by");
+  TextTable table(header);
+  for (size_t t = 0; t < c.jackknife.size(); ++t) {
+    std::vector<std::string> row = {c.targets[t].name};
+    for (size_t k = 0; k < c.estimated.size(); ++k) {
+      const Parameter& p = *c.Find(c.estimated[k]);
+      row.push_back(fmt::format("{:+.2f} u", (c.jackknife[t][k] - p.value) / p.u));
+    }
+    table.Add(row);
+  }
+  return table.Text() + "\n";
+}
+
 // Where u comes from: the budget, and its sum.
 std::string BudgetText(const Calibration& c) {
   std::vector<std::string> header = {"u comes from", "type", "value", "unit", "dof"};
@@ -123,7 +140,7 @@ std::string ToText(const Calibration& c) {
   if (!c.estimated.empty()) text += "\n" + BudgetText(c);
   if (!HasDeclared(c)) text += "repeatability and fit only: not a traceable uncertainty\n";
   if (c.monte_carlo.trials > 0) text += "\n" + MonteCarloText(c);
-  text += "\n" + Targets(c) + "\n";
+  text += "\n" + Targets(c) + "\n" + LeaveOneOut(c);
   text += "grid search: ";
   for (size_t k = 0; k < c.grid.at.size(); ++k)
     text += c.grid.names[k] + " = " + Significant(c.grid.at[k], 6) + " mm, ";
