@@ -18,7 +18,8 @@ struct Command {
   int (*run)(const std::vector<std::string>& arguments);  // exit code
 };
 
-extern const Command kRefineCommand, kCompareCommand, kSimulateCommand, kTransformCommand;
+extern const Command kRefineCommand, kMonteCarloCommand, kCompareCommand, kSimulateCommand, kTransformCommand,
+    kPropagateCommand;
 
 // Exit codes.
 inline constexpr int kTrusted = 0, kBadInput = 1, kUnreliable = 2;

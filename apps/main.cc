@@ -13,14 +13,15 @@ DECLARE_bool(version);
 namespace scancal {
 namespace {
 
-const Command* const kCommands[] = {&kRefineCommand, &kCompareCommand, &kSimulateCommand, &kTransformCommand};
+const Command* const kCommands[] = {&kRefineCommand,   &kMonteCarloCommand, &kCompareCommand,
+                                    &kSimulateCommand, &kTransformCommand,  &kPropagateCommand};
 std::string command_line;
 
 void PrintOverview() {
   std::printf("scancal %s: calibration of 3D scanners, with its uncertainty\n\nusage: scancal COMMAND [flags]\n\n",
               SCANCAL_VERSION);
   for (const Command* command : kCommands)
-    std::printf("  %-10s %-8s %s\n", command->name, command->arguments, command->summary);
+    std::printf("  %-10s %-11s %s\n", command->name, command->arguments, command->summary);
   std::printf("\nscancal COMMAND --help lists the flags of a command.\n");
 }
 

@@ -19,7 +19,7 @@ DEFINE_double(noise, 0.05, "standard deviation along depth, mm");
 DEFINE_double(line_correlation, 1, "integrated correlation length of the noise along the line, points; 1 is white");
 DEFINE_double(encoder_jitter, 0, "standard deviation of the angle, one error a profile, deg");
 DEFINE_double(form, 0, "smooth deviation of the plate over what the scan sees of it, mm rms");
-DEFINE_string(form_kind, "modes", "modes (Legendre products, as u assumes) or smooth (plane waves)");
+DEFINE_string(form_kind, "modes", "modes (Legendre products, as u assumes), smooth (plane waves) or bent (long ones)");
 DEFINE_bool(one_plate, false, "the same form in every placement");
 DEFINE_double(outliers, 0, "share of points that are spikes, 0 to 1");
 DEFINE_double(background, 0, "share of every line that sees a wall 30 to 60 mm behind the plate, 0 to 1");
@@ -39,8 +39,8 @@ int Run(const std::vector<std::string>& arguments) {
   if (FLAGS_out.empty()) return Complain("--out: expected the folder to write");
   if (FLAGS_format != "csv" && FLAGS_format != "npy")
     return Complain("--format: found \"" + FLAGS_format + "\", expected csv or npy");
-  if (FLAGS_form_kind != "modes" && FLAGS_form_kind != "smooth")
-    return Complain("--form_kind: found \"" + FLAGS_form_kind + "\", expected modes or smooth");
+  if (FLAGS_form_kind != "modes" && FLAGS_form_kind != "smooth" && FLAGS_form_kind != "bent")
+    return Complain("--form_kind: found \"" + FLAGS_form_kind + "\", expected modes, smooth or bent");
   TurntableScene scene;
   scene.pose = {FLAGS_M, FLAGS_N, FLAGS_tilt_x * kDegree, FLAGS_tilt_y * kDegree, 0, 0};
   scene.placements = FLAGS_placements;
@@ -52,7 +52,9 @@ int Run(const std::vector<std::string>& arguments) {
   scene.line_correlation = FLAGS_line_correlation;
   scene.encoder_jitter = FLAGS_encoder_jitter * kDegree;
   scene.form = FLAGS_form;
-  scene.form_kind = FLAGS_form_kind == "modes" ? FormKind::kModes : FormKind::kSmooth;
+  scene.form_kind = FLAGS_form_kind == "modes"    ? FormKind::kModes
+                    : FLAGS_form_kind == "smooth" ? FormKind::kSmooth
+                                                  : FormKind::kBent;
   scene.one_plate = FLAGS_one_plate;
   scene.outliers = FLAGS_outliers;
   scene.background = FLAGS_background;

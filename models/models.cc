@@ -9,12 +9,16 @@ constexpr ScannerKind kKinds[] = {kTurntable};
 }  // namespace
 
 Result<const ScannerKind*> FindScannerKind(const Dataset& dataset) {
+  return FindScannerKind(dataset.model, dataset.yaml.Where("model"));
+}
+
+Result<const ScannerKind*> FindScannerKind(const std::string& name, const std::string& place) {
   std::string names;
   for (const ScannerKind& kind : kKinds) {
-    if (dataset.model == kind.name) return &kind;
+    if (name == kind.name) return &kind;
     names += (names.empty() ? "" : ", ") + std::string(kind.name);
   }
-  return Error{dataset.yaml.Where("model") + ": found \"" + dataset.model + "\", expected one of: " + names};
+  return Error{place + ": found \"" + name + "\", expected one of: " + names};
 }
 
 }  // namespace scancal

@@ -8,16 +8,20 @@
 #include "io/dataset.h"
 #include "io/json_file.h"
 #include "io/point_cloud.h"
+#include "io/point_list.h"
 #include "io/result.h"
 #include "solver/calibration.h"
 #include "solver/comparison.h"
+#include "solver/propagation.h"
+#include "solver/uncertainty/resampling.h"
 
 namespace scancal {
 
 struct RefineChoice {
-  std::string residual;  // a model's name for one of its residuals; empty: the headline
+  std::string residual;        // a model's name for one of its residuals; empty: the headline
   bool equal_weights = false;  // in place of weights from the estimated variances
   int max_iterations = 100;
+  MonteCarloChoice monte_carlo{};
 };
 
 // A scanner with its data loaded and compressed.
@@ -48,6 +52,9 @@ struct ScannerKind {
   Result<std::unique_ptr<Scanner>> (*reload)(const Dataset& dataset, const Json& data, const std::string& file);
   // All points of the data set's scans in the frame of the calibration, streamed; returns their number.
   Result<int64_t> (*transform)(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
+  // Points as the scanner shows them, in the frame of the calibration with their uncertainty; distances: of each from
+  // the one before.
+  Result<Propagation> (*propagate)(const Calibration& calibration, const PointRequest& points, bool distances);
 };
 
 }  // namespace scancal

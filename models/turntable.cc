@@ -1,8 +1,8 @@
 #include "models/turntable.h"
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <numbers>
+#include "models/turntable/measured_point.h"
 
 namespace scancal {
 
@@ -92,9 +92,7 @@ void Turntable::SetPlane(const Eigen::Vector3d& normal, double distance, Target*
 }
 
 Eigen::Affine3d TurntablePose::TableFromSensor(double alpha) const {
-  return Eigen::AngleAxisd(std::numbers::pi - alpha, Eigen::Vector3d::UnitZ()) * Eigen::Translation3d(-M, N, 0) *
-         Eigen::AngleAxisd(tilt_y, Eigen::Vector3d::UnitY()) * Eigen::AngleAxisd(tilt_x, Eigen::Vector3d::UnitX()) *
-         Eigen::Scaling(1.0, 1 + scale_y, 1 + scale_z);
+  return scancal::TableFromSensor(alpha, M, N, tilt_x, tilt_y) * Eigen::Scaling(1.0, 1 + scale_y, 1 + scale_z);
 }
 
 }  // namespace scancal

@@ -101,10 +101,11 @@ class Turntable {
   static std::pair<Eigen::Vector3d, double> Plane(const Target& plane, const Eigen::Vector3d& own);
   static void SetPlane(const Eigen::Vector3d& normal, double distance, Target* target);  // n, d and the tangents
 
- private:
+  // What the encoder reads beyond the true angle, rad.
   template <class T>
   static T EncoderError(double alpha, const Seen<T>& q);
 
+ private:
   Residuals residuals_;
   Quantities quantities_;
 };

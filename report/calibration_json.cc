@@ -1,5 +1,7 @@
 #include "report/calibration_json.h"
 #include <cmath>
+#include "report/montecarlo_json.h"
+#include "report/uncertainty_json.h"
 
 namespace scancal {
 namespace {
@@ -21,6 +23,7 @@ Json ParameterJson(const Parameter& p) {
   json["u_naive"] = Number(p.u_naive);
   json["u_clustered"] = Number(p.u_clustered);
   json["u_jackknife"] = p.u_jackknife > 0 ? Number(p.u_jackknife) : Json(nullptr);
+  json["u_bootstrap"] = p.u_bootstrap > 0 ? Number(p.u_bootstrap) : Json(nullptr);
   return json;
 }
 
@@ -90,6 +93,18 @@ Json BudgetJson(const Calibration& calibration) {
   return lines;
 }
 
+Json VolumeJson(const UncertaintyMap& volume) {
+  if (volume.rows.empty()) return Json::object();
+  Json units = Json::array(), rows = Json::array();
+  for (const Unit unit : volume.units) units.push_back(Name(unit));
+  for (const std::vector<double>& row : volume.rows) {
+    Json numbers = Json::array();
+    for (const double number : row) numbers.push_back(Number(number));
+    rows.push_back(std::move(numbers));
+  }
+  return {{"columns", volume.columns}, {"units", units}, {"rows", rows}};
+}
+
 Json JackknifeJson(const Calibration& calibration) {
   Json list = Json::array();
   for (size_t t = 0; t < calibration.jackknife.size(); ++t)
@@ -133,10 +148,10 @@ Json ToJson(const Calibration& c) {
   json["compare"] = Json::array();
   json["surface"] = Json::object();
   json["jackknife"] = JackknifeJson(c);
-  json["montecarlo"] = Json::object();
+  json["montecarlo"] = ToJson(c.monte_carlo);
   json["residuals"] = {{"targets", Json::array()}};
   for (const TargetSummary& target : c.targets) json["residuals"]["targets"].push_back(ResidualsJson(target));
-  json["volume"] = Json::object();
+  json["volume"] = VolumeJson(c.volume);
   json["data"] = Json::object();
   json["converged"] = c.converged;
   json["iterations"] = c.iterations;
@@ -174,6 +189,10 @@ Result<Calibration> CalibrationFromJson(const Json& json, const std::string& fil
       if (each.is_object() && each.contains("file") && each["file"].is_string() && each.contains("sha256") &&
           each["sha256"].is_string())
         result.inputs.push_back({each["file"], each["sha256"]});
+  if (json.contains("montecarlo")) {
+    SCANCAL_ASSIGN_OR_RETURN(result.monte_carlo, MonteCarloFromJson(json["montecarlo"], file));
+  }
+  SCANCAL_RETURN_IF_ERROR(ReadUncertainties(json, file, &result));
   return result;
 }
 

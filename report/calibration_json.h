@@ -8,7 +8,8 @@
 namespace scancal {
 
 Json ToJson(const Calibration& calibration);  // "data" is left to the scanner
-// What a later command needs of it: model, status, parameters, inputs. file: for messages.
+// What a later command needs of it: model, status, parameters, inputs, Monte Carlo, and what uncertainty_json.h reads.
+// file: for messages.
 Result<Calibration> CalibrationFromJson(const Json& json, const std::string& file);
 
 }  // namespace scancal

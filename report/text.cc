@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include "report/text_table.h"
 
 namespace scancal {
@@ -15,16 +16,17 @@ std::string Dof(double dof) { return dof < 1e6 ? Count(std::floor(dof)) : "infin
 std::string Percent(double share) { return share < 0.0005 ? "0.0" : fmt::format("{:.1f}", 100 * share); }
 
 std::string Parameters(const Calibration& c) {
-  TextTable table({"", "value", "unit", "u", "U (95 %)", "k", "dof", "u naive", "u clustered", "u jackknife"});
+  TextTable table(
+      {"", "value", "unit", "u", "U (95 %)", "k", "dof", "u naive", "u clustered", "u jackknife", "u bootstrap"});
   for (const Parameter& p : c.parameters) {
     if (p.role == Role::kHold && p.value == 0) continue;
     if (p.role != Role::kEstimate) {
-      table.Add({p.name, Concise(p.value, p.u), Name(p.unit), Shown(p.u), "", "", "", "", "",
+      table.Add({p.name, Concise(p.value, p.u), Name(p.unit), Shown(p.u), "", "", "", "", "", "",
                  p.role == Role::kHold ? "held" : "considered"});
       continue;
     }
-    table.Add({p.name, Concise(p.value, p.u), Name(p.unit), Shown(p.u), Shown(p.U), Significant(p.k, 3),
-               Dof(p.dof), Shown(p.u_naive), Shown(p.u_clustered), Shown(p.u_jackknife)});
+    table.Add({p.name, Concise(p.value, p.u), Name(p.unit), Shown(p.u), Shown(p.U), Significant(p.k, 3), Dof(p.dof),
+               Shown(p.u_naive), Shown(p.u_clustered), Shown(p.u_jackknife), Shown(p.u_bootstrap)});
   }
   return table.Text();
 }
@@ -69,6 +71,47 @@ std::string BudgetText(const Calibration& c) {
   return table.Text();
 }
 
+// To the second digit of u, as Concise has it.
+std::string Rounded(double value, double u) {
+  const std::string concise = Concise(value, u);
+  return concise.substr(0, concise.find('('));
+}
+
+std::string MonteCarloText(const Calibration& c) {
+  const MonteCarloSummary& summary = c.monte_carlo;
+  std::string text = "Monte Carlo: " + Count(summary.trials) + " trials, seed " + std::to_string(summary.seed) +
+                     "; value +- U validated to " + (summary.digits == 1 ? "one digit" : "two digits") +
+                     " of u (JCGM 101, clause 8)\n";
+  TextTable table({"", "mean", "unit", "u", "low", "high", "value - U", "value + U", "tolerance", "value +- U"});
+  for (const MonteCarloParameter& p : summary.parameters)
+    table.Add({p.name, Rounded(p.mean, p.deviation), Name(c.Find(p.name)->unit), Shown(p.deviation),
+               Rounded(p.low, p.deviation), Rounded(p.high, p.deviation), Rounded(p.gum_low, p.deviation),
+               Rounded(p.gum_high, p.deviation), Shown(p.tolerance), p.verdict});
+  text += table.Text();
+  if (!summary.stable) text += "the trials were too few for the adaptive procedure of clause 7.9 to end\n";
+  return text;
+}
+
+// The range of the largest U over the volume, and where it is largest.
+std::string VolumeText(const UncertaintyMap& volume) {
+  if (volume.rows.empty()) return "";
+  const auto by_U = [](const auto& a, const auto& b) { return a.back() < b.back(); };
+  const auto [least, most] = std::minmax_element(volume.rows.begin(), volume.rows.end(), by_U);
+  const std::string from = Significant(least->back(), 2), to = Significant(most->back(), 2);
+  std::string text = "expanded uncertainty of a measured point over the scanned volume: " + from;
+  if (from != to) {
+    text += " to " + to + " mm, largest at";
+    for (size_t k = 0; k < volume.columns.size() && volume.columns[k] != "X"; ++k) {
+      const bool angle = volume.units[k] == Unit::kRad;
+      text += (k ? ", " : " ") + volume.columns[k] + " = " +
+              Significant(angle ? (*most)[k] * 180 / std::numbers::pi : (*most)[k], 3) + (angle ? " deg" : " mm");
+    }
+  } else {
+    text += " mm throughout";
+  }
+  return text + "; the noise of a single reading is not in it\n";
+}
+
 bool HasDeclared(const Calibration& c) {
   return std::any_of(c.budget.begin(), c.budget.end(), [](const BudgetLine& line) { return line.type == 'B'; });
 }
@@ -79,6 +122,7 @@ std::string ToText(const Calibration& c) {
   std::string text = Parameters(c);
   if (!c.estimated.empty()) text += "\n" + BudgetText(c);
   if (!HasDeclared(c)) text += "repeatability and fit only: not a traceable uncertainty\n";
+  if (c.monte_carlo.trials > 0) text += "\n" + MonteCarloText(c);
   text += "\n" + Targets(c) + "\n";
   text += "grid search: ";
   for (size_t k = 0; k < c.grid.at.size(); ++k)
@@ -100,6 +144,7 @@ std::string ToText(const Calibration& c) {
   if (c.joint.k > 0)
     text += "k of " + std::to_string(c.estimated.size()) +
             " quantities jointly (95 % region): " + Significant(c.joint.k, 3) + "; of one: see the table\n";
+  text += VolumeText(c.volume);
   text += "\n";
   for (const std::string& warning : c.warnings) text += "warning: " + warning + "\n";
   for (const std::string& reason : c.unreliable) text += "unreliable: " + reason + "\n";

@@ -1,6 +1,7 @@
 // The result as a plain value. Lengths mm, angles rad, whatever the input used.
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@ struct Parameter {
   Role role = Role::kHold;
   double value = 0;
   // Standard uncertainties; 0 for what is held. u is the headline (solver/uncertainty/headline.h).
-  double u = 0, u_naive = 0, u_clustered = 0, u_jackknife = 0;
+  double u = 0, u_naive = 0, u_clustered = 0, u_jackknife = 0, u_bootstrap = 0;
   double dof = 0, k = 0, U = 0;  // U = k u: 95 % coverage
 };
 
@@ -76,6 +77,35 @@ struct JointRegion {  // all estimated parameters together, coverage 95 %
   double k = 0, dof = 0;
 };
 
+struct MonteCarloParameter {  // JCGM 101, of one estimated parameter
+  std::string name;
+  double mean = 0, deviation = 0;    // of the trials
+  double low = 0, high = 0;          // probabilistically symmetric 95 % interval
+  double gum_low = 0, gum_high = 0;  // value - U, value + U
+  double tolerance = 0;              // by which the ends may differ, 7.9.2
+  std::string verdict;               // on value +- U: PASS, FAIL or UNDECIDED
+  std::vector<double> edges;         // of the bins of a histogram, one more than counts
+  std::vector<double> counts;
+};
+
+struct MonteCarloSummary {
+  double trials = 0;  // that were drawn; 0: none
+  double failed = 0;  // of them did not settle, and are left out
+  uint64_t seed = 1;
+  int digits = 1;      // of u that the verdicts are about
+  bool stable = true;  // at two digits: the adaptive procedure of 7.9 ended by itself
+  std::vector<MonteCarloParameter> parameters;
+};
+
+// Points on a grid of readings that spans what was scanned, with the expanded uncertainties (95 %) that the calibration
+// gives them. Columns: the numbers of a reading, "X", "Y", "Z", then U along these and in the direction that is known
+// least.
+struct UncertaintyMap {
+  std::vector<std::string> columns;
+  std::vector<Unit> units;
+  std::vector<std::vector<double>> rows;
+};
+
 struct HashedFile {
   std::string file, sha256;
 };
@@ -98,6 +128,8 @@ struct Calibration {
   std::map<std::string, double> weakest;  // components of the least determined direction
   std::vector<BudgetLine> budget;
   std::vector<std::vector<double>> jackknife;  // per target: the estimated parameters without it
+  MonteCarloSummary monte_carlo;
+  UncertaintyMap volume;
   int iterations = 0;
   bool converged = false;
   double seconds = 0;

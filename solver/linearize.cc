@@ -93,4 +93,9 @@ Estimate GaussNewtonStep(const Linearization& linear) {
   return step;
 }
 
+void Add(const Estimate& step, Estimate* x) {
+  x->system += step.system;
+  for (size_t t = 0; t < x->targets.size(); ++t) x->targets[t] += step.targets[t];
+}
+
 }  // namespace scancal

@@ -38,5 +38,6 @@ Linearization Linearize(const Problem& problem, const Estimate& at, Storey store
 
 // The step that minimises the linearised sum of squares. Not finite where a quantity is not determined.
 Estimate GaussNewtonStep(const Linearization& linear);
+void Add(const Estimate& step, Estimate* x);
 
 }  // namespace scancal

@@ -12,7 +12,7 @@ namespace scancal {
 template <class T>
 struct Seen {
   const T* q;
-  const T* point;  // points x count, values of point scope; null: zero
+  const double* point;  // points x count, values of point scope; null: zero
   int count;
   const T& operator[](int k) const { return q[k]; }
   T operator()(int i, int k) const { return point ? q[k] + point[i * count + k] : q[k]; }  // as point i sees it
@@ -73,7 +73,7 @@ class ModelRows final : public Rows {
     for (size_t first = 0; first < seeds.size(); first += kWidth) {
       const auto now = seeds.subspan(first, std::min<size_t>(kWidth, seeds.size() - first));
       for (int k = 0; k < std::ssize(now); ++k) x[now[k]].v[k] = 1;
-      Call(Seen<Jet>{x.data(), nullptr, quantities}, rows.data());
+      Call(Seen<Jet>{x.data(), point, quantities}, rows.data());
       for (const int k : now) x[k].v.setZero();
       for (size_t i = 0; i < rows.size(); ++i) {
         r[i] = rows[i].a;

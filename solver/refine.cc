@@ -106,11 +106,6 @@ ceres::Solver::Summary SolveByCeres(const Problem& problem, Storey storey, int m
   return summary;
 }
 
-void Add(const Estimate& step, Estimate* x) {
-  x->system += step.system;
-  for (size_t t = 0; t < x->targets.size(); ++t) x->targets[t] += step.targets[t];
-}
-
 bool AllFinite(const Estimate& x) {
   return x.system.allFinite() &&
          std::all_of(x.targets.begin(), x.targets.end(), [](const auto& own) { return own.allFinite(); });

@@ -145,8 +145,9 @@ Placement CompressPlacement(const RawScan& scan, const TurntablePose& pose) {
   return placement;
 }
 
-ViewResiduals SummaryOf(const LagSums& lag_sums, const ResidualHistogram& histogram) {
-  const LineCorrelation along = Correlate(lag_sums);
+ViewResiduals ResidualsOf(const Placement& placement) {
+  const LineCorrelation along = Correlate(placement.lag_sums);
+  const ResidualHistogram& histogram = placement.histogram;
   return {along.lags,
           along.correlation,
           along.length,

@@ -37,8 +37,8 @@ Result<RawScan> ReadCleanScan(const ScanDeclaration& scan, double sense);
 // Sets aside what is off the plane of most profiles, as it appears at `pose`, and compresses the rest.
 Placement CompressPlacement(const RawScan& scan, const TurntablePose& pose);
 
-// For the result.
-ViewResiduals SummaryOf(const LagSums& lag_sums, const ResidualHistogram& histogram);
+// The residuals from each profile's own line, for the result.
+ViewResiduals ResidualsOf(const Placement& placement);
 
 // Units and angles that cannot be: "angles span 30 rad ...; are they degrees?"
 Result<void> CheckPlausible(const std::vector<Placement>& placements, const Units& units);

@@ -18,7 +18,7 @@ PlateForm::PlateForm(FormKind kind, double rms, const PlateRectangle& over, Rand
   if (kind == FormKind::kModes) {
     DrawModes(rms, &random);
   } else {
-    DrawWaves(rms, &random);
+    DrawWaves(kind, rms, &random);
   }
 }
 
@@ -26,13 +26,16 @@ void PlateForm::DrawModes(double rms, Random* random) {
   for (int k = 0; k < kFormModes; ++k) modes_.push_back(rms * random->Normal());
 }
 
-void PlateForm::DrawWaves(double rms, Random* random) {
-  const double size = 2 * std::max(over_.half_u, over_.half_v);
-  for (int k = 0; k < kWaves; ++k) {
-    const double length = size * (1 + 2 * random->Uniform()), direction = std::numbers::pi * random->Uniform();
-    const double wave_number = 2 * std::numbers::pi / length;
-    waves_.push_back({wave_number * std::cos(direction) * over_.half_u,
-                      wave_number * std::sin(direction) * over_.half_v, 2 * std::numbers::pi * random->Uniform()});
+void PlateForm::DrawWaves(FormKind kind, double rms, Random* random) {
+  const bool bent = kind == FormKind::kBent;
+  const double longer = std::max(over_.half_u, over_.half_v);
+  for (int k = 0; k < kWaves; ++k) {  // lengths in half sides
+    const double length = bent ? 2 + 4 * random->Uniform() : 1.5 + 2.5 * random->Uniform();
+    const double direction = std::numbers::pi * random->Uniform(), phase = 2 * std::numbers::pi * random->Uniform();
+    const double along_u = 2 * std::numbers::pi / length * std::cos(direction),
+                 along_v = 2 * std::numbers::pi / length * std::sin(direction);
+    waves_.push_back(
+        {along_u * (bent ? over_.half_u / longer : 1), along_v * (bent ? over_.half_v / longer : 1), phase});
   }
   amplitude_ = 1;
   double sums[3] = {0, 0, 0}, nodes_squared = 0, squares = 0;

@@ -8,7 +8,8 @@ namespace scancal {
 enum class FormKind {
   kModes,   // orthonormal Legendre products of total degree 2 to 4, independent normal amplitudes of variance ~
             // degree^-4
-  kSmooth,  // eight plane waves of random direction and phase, 1 to 3 times as long as the rectangle, its plane removed
+  kSmooth,  // eight plane waves of random direction and phase, 3/4 to 2 sides of the rectangle long, its plane removed
+  kBent,    // the same, 1 to 3 times as long as the longer side: mostly bent about one axis
 };
 
 struct PlateRectangle {  // on the plate, mm
@@ -16,7 +17,7 @@ struct PlateRectangle {  // on the plate, mm
 };
 
 // Smooth form over a rectangle (uncertainty specification, section 2). rms, mm: of kModes expected over the ensemble,
-// so that one plate may have twice as much; of kSmooth of every single plate, a function that the modes do not hold.
+// so that one plate may have twice as much; of the waves of every single plate, a function that the modes do not hold.
 class PlateForm {
  public:
   PlateForm() = default;  // flat
@@ -29,7 +30,7 @@ class PlateForm {
     double along_u, along_v, phase;  // rad per half side
   };
   void DrawModes(double rms, Random* random);
-  void DrawWaves(double rms, Random* random);
+  void DrawWaves(FormKind kind, double rms, Random* random);
   double Waves(double u, double v) const;
 
   PlateRectangle over_;

@@ -5,8 +5,9 @@
 namespace scancal {
 
 Result<Json> TurntableScanner::Data() const {
-  SCANCAL_ASSIGN_OR_RETURN(Json data, PlacementsToJson(placements_));
-  data["dataset"] = declaration_.dataset.text;
+  Json data = {{"dataset", declaration_.dataset.text}};
+  SCANCAL_ASSIGN_OR_RETURN(const Json placements, PlacementsToJson(placements_));
+  data.update(placements);
   return data;
 }
 

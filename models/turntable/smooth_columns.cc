@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include "models/turntable/volume.h"
 
 namespace scancal {
 namespace {
@@ -93,16 +94,12 @@ void AddForm(const std::vector<Profile>& profiles, const TurntablePose& pose, co
 }
 
 void AddBend(const std::vector<Placement>& placements, std::vector<Turntable::Target>* targets) {
-  Bounds depth;
-  for (const Placement& placement : placements)
-    for (const Profile& profile : placement.profiles)
-      for (const ProfileFactor& segment : profile.segments)
-        for (const PseudoPoint& p : EndsOf(segment)) depth.Add(Eigen::Array2d(p.y, 0));
+  const ScannedVolume volume = VolumeOf(placements);
   for (size_t t = 0; t < placements.size(); ++t) {
     for (size_t k = 0; k < placements[t].profiles.size(); ++k) {
       Turntable::View& view = (*targets)[t].views[k];
       view.bend = AsLine(placements[t].profiles[k], view, 1, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
-        const double eta = depth.Scaled({p.y, 0})[0];
+        const double eta = volume.Eta(p.y);
         return Eigen::RowVectorXd::Constant(1, eta * eta);
       });
     }

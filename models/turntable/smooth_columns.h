@@ -14,7 +14,7 @@ namespace scancal {
 void AddForm(const std::vector<Profile>& profiles, const TurntablePose& pose, const Eigen::Vector3d& normal,
              double distance, std::vector<Turntable::View>* views);
 
-// `bend` of every view: eta^2, eta from -1 to 1 over the depths of all placements.
+// `bend` of every view: eta^2, eta from -1 to 1 over the depths of all placements (volume.h).
 void AddBend(const std::vector<Placement>& placements, std::vector<Turntable::Target>* targets);
 
 }  // namespace scancal

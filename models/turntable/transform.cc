@@ -1,35 +1,17 @@
 // The scans of a data set as one point cloud in the table frame.
-#include <cmath>
 #include <set>
 #include "io/progress.h"
+#include "models/turntable/calibrated_turntable.h"
 #include "models/turntable/raw_profiles.h"
 #include "models/turntable/turntable_scanner.h"
 
 namespace scancal {
-namespace {
-
-Result<TurntablePose> PoseOf(const Calibration& calibration) {
-  TurntablePose pose;
-  for (const auto& [name, value] :
-       {std::pair{"M", &pose.M}, std::pair{"N", &pose.N}, std::pair{"tilt_x", &pose.tilt_x},
-        std::pair{"tilt_y", &pose.tilt_y}, std::pair{"scale_y", &pose.scale_y}, std::pair{"scale_z", &pose.scale_z}}) {
-    const Parameter* parameter = calibration.Find(name);
-    if (parameter) {
-      *value = parameter->value;
-    } else if (value == &pose.M || value == &pose.N) {
-      return Error{std::string("the calibration has no parameter ") + name + ", expected the result of a turntable"};
-    }
-  }
-  return pose;
-}
-
-}  // namespace
 
 Result<int64_t> TransformTurntable(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud) {
   if (calibration.model != kTurntable.name)
     return Error{"the calibration is of model \"" + calibration.model + "\", the data set of \"" + dataset.model +
                  "\""};
-  SCANCAL_ASSIGN_OR_RETURN(const TurntablePose pose, PoseOf(calibration));
+  SCANCAL_ASSIGN_OR_RETURN(const CalibratedTurntable turntable, CalibratedTurntable::From(calibration));
   Turntable model(Turntable::Residuals::kDepth);
   SCANCAL_ASSIGN_OR_RETURN(const TurntableDeclaration declaration, DeclareTurntable(dataset, &model));
   std::set<std::filesystem::path> done;  // several targets may be regions of one scan, which is written whole, once
@@ -48,7 +30,7 @@ Result<int64_t> TransformTurntable(const Dataset& dataset, const Calibration& ca
       const SensorColumns sensor = ToSensor(declaration.sense, batch);
       transformed.clear();
       for (size_t i = 0; i < batch.size(); ++i) {
-        const Eigen::Vector3d p = pose.Point(sensor.alpha[i], sensor.y[i], sensor.z[i]);
+        const Eigen::Vector3d p = turntable.Point(sensor.alpha[i], sensor.y[i], sensor.z[i]);
         transformed.push_back({p.x(), p.y(), p.z()});
       }
       SCANCAL_RETURN_IF_ERROR(cloud->Write(transformed, number));

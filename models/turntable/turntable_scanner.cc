@@ -9,6 +9,7 @@
 #include "models/parts/median.h"
 #include "models/turntable/smooth_columns.h"
 #include "models/turntable/verdicts.h"
+#include "models/turntable/volume.h"
 
 namespace scancal {
 namespace {
@@ -180,6 +181,8 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
   if (!plane && !choice.residual.empty() && choice.residual != "depth")
     return Error{"residual: found \"" + choice.residual + "\", expected depth or plane"};
   const bool weighted = !plane && !choice.equal_weights;
+  if (!weighted && choice.monte_carlo.trials > 0)
+    return Error{"montecarlo: found equal weights, expected estimated ones: only they say how large all noise is"};
   SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
   const auto began = std::chrono::steady_clock::now();
   TurntableFit fit = Fit(start.pose, plane ? Turntable::Residuals::kPlane : Turntable::Residuals::kDepth, {}, {},
@@ -191,6 +194,9 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
   // Within a profile the plain residual repeats as the depth does, seen at an angle: its pure error is not comparable.
   Calibration result = Summarize(fit.solution, plane ? PureError{} : Pooled(placements_));
   result.lack_of_fit.pure_error_sigma = Pooled(placements_).sigma();
+  Progress progress("Monte Carlo");
+  AddResampling(
+      fit.solution, choice.monte_carlo, [&](double done) { progress.Show(done); }, &result);
   result.model = kTurntable.name;
   result.name = declaration_.dataset.name;
   result.residual = plane ? "plane" : "depth";
@@ -205,7 +211,7 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
     TargetSummary& target = result.targets[t];
     target.missing = placements_[t].missing;
     target.set_aside = placements_[t].set_aside;
-    target.residuals = SummaryOf(placements_[t].lag_sums, placements_[t].histogram);
+    target.residuals = ResidualsOf(placements_[t]);
     const auto [normal, distance] = fit.Plane(t);
     target.geometry = {{"normal", {normal[0], normal[1], normal[2]}}, {"distance", {distance}}};
   }
@@ -214,6 +220,7 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
     result.warnings.push_back(
         "point-to-plane residuals are biased by the noise along depth; the depth residual is not");
   JudgeTurntable(box, placements_, start, fit, &result);
+  AddVolume(placements_, &result);
   return result;
 }
 

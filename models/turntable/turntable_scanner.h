@@ -67,7 +67,9 @@ Result<std::unique_ptr<TurntableScanner>> CompressTurntable(const TurntableDecla
 Result<std::unique_ptr<Scanner>> LoadTurntable(const Dataset& dataset);
 Result<std::unique_ptr<Scanner>> ReloadTurntable(const Dataset& dataset, const Json& data, const std::string& file);
 Result<int64_t> TransformTurntable(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
+Result<Propagation> PropagateTurntable(const Calibration& calibration, const PointRequest& points, bool distances);
 
-inline constexpr ScannerKind kTurntable = {"turntable", &LoadTurntable, &ReloadTurntable, &TransformTurntable};
+inline constexpr ScannerKind kTurntable = {"turntable", &LoadTurntable, &ReloadTurntable, &TransformTurntable,
+                                           &PropagateTurntable};
 
 }  // namespace scancal

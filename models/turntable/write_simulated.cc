@@ -128,7 +128,9 @@ Json Truth(const TurntableScene& scene, const std::vector<SimulatedPlacement>& p
   truth["encoder_jitter"] = scene.encoder_jitter;
   truth["form"] = scene.form;
   if (scene.form > 0) {
-    truth["form_kind"] = scene.form_kind == FormKind::kModes ? "modes" : "smooth";
+    truth["form_kind"] = scene.form_kind == FormKind::kModes    ? "modes"
+                         : scene.form_kind == FormKind::kSmooth ? "smooth"
+                                                                : "bent";
     truth["one_plate"] = scene.one_plate;
   }
   truth["outliers"] = scene.outliers;

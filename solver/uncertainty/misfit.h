@@ -9,8 +9,8 @@ namespace scancal {
 
 // A source of system or target scope that was not estimated (held, or considered with its u), tested for what the
 // residuals say of it (score test; Rao 1948): with B its columns dr/dq, free of what the estimated quantities explain,
-// m = -(B'B)^-1 B'r is what a fit would give it; its covariance is (B'B)^-1 from the noise, and what everything that was
-// considered, itself among it, makes of m.
+// m = -(B'B)^-1 B'r is what a fit would give it; its covariance is (B'B)^-1 from the noise, and what everything that
+// was considered, itself among it, makes of m.
 struct Misfit {
   std::string source;
   bool considered = false;  // with a u; else held

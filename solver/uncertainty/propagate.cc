@@ -1,5 +1,6 @@
 #include "solver/uncertainty/propagate.h"
 #include <Eigen/QR>
+#include <algorithm>
 #include <map>
 #include <set>
 #include "solver/uncertainty/covariance.h"
@@ -88,10 +89,15 @@ Budget Propagate(const Problem& problem, const Estimate& fit, const Linearizatio
                   linear.targets.back().system_left.row(static_cast<Eigen::Index>(p)).transpose());
   const Eigen::MatrixXd h_inverse = InverseInformation(linear);
   Budget budget = meat.Between(h_inverse);
-  for (Eigen::Index k = 0; k < n; ++k)
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Quantity& quantity = influence(k);
+    const auto of_source = std::count_if(influences.begin(), influences.end(), [&](int other) {
+      return problem.quantities[other].Source() == quantity.Source();
+    });
     for (Contribution& line : budget.lines)
-      if (influence(k).scope == Scope::kSystem && influence(k).u > 0 && line.source == influence(k).Source())
-        line.sensitivity = -h_inverse * of_system.col(k) / influence(k).u;
+      if (of_source == 1 && quantity.scope == Scope::kSystem && quantity.u > 0 && line.source == quantity.Source())
+        line.sensitivity = -h_inverse * of_system.col(k) / quantity.u;
+  }
   return budget;
 }
 

@@ -13,7 +13,7 @@ struct Contribution {
   bool prior = false;            // of an estimated quantity
   Eigen::MatrixXd covariance;    // system x system
   Eigen::VectorXd
-      sensitivity;  // d parameter / d quantity, for a source with one value for the whole system; else empty
+      sensitivity;  // d parameter / d quantity, for a source that is one quantity of the system; else empty
 };
 
 struct Budget {

@@ -20,6 +20,8 @@ void CompareJoint(const LargeData& data, const std::filesystem::path& scipy_scri
                   Table* table);
 // Everything after reading, for more points on the same profiles, and for more profiles.
 void CompareScaling(Table* table);
+// A trial of the Monte Carlo against a refinement.
+void CompareMonteCarlo(Table* table);
 // Compressing points in memory against a sum of the same bytes.
 void CompareCompression(Table* table);
 // Reading CSV against a bare from_chars loop.

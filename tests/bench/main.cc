@@ -23,6 +23,7 @@ void Run(const std::filesystem::path& folder, const std::filesystem::path& scipy
   CompareCompression(&table);
   CompareReading(folder, &table);
   CompareScaling(&table);
+  CompareMonteCarlo(&table);
   Say("three placements, three million points");
   LargeData data;
   data.points = SimulateTurntable(LargeScene());

@@ -37,7 +37,7 @@ std::vector<std::string> HelpFlags(const std::string& command) {
 TEST(HelpTest, WithoutArgumentsTheCommandsAreListed) {
   const Outcome outcome = RunScancal({});
   EXPECT_EQ(outcome.exit_code, 1);
-  for (const char* command : {"refine", "compare", "simulate", "transform"})
+  for (const char* command : {"refine", "montecarlo", "compare", "simulate", "transform", "propagate"})
     EXPECT_THAT(outcome.out, HasSubstr("\n  " + std::string(command) + " "));
   EXPECT_THAT(outcome.out, Not(HasSubstr("--flagfile")));
 }
@@ -56,9 +56,11 @@ TEST(HelpTest, VersionIsOneLine) {
 }
 
 TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
-  EXPECT_THAT(HelpFlags("refine"), ElementsAre("out", "residual", "weights", "max_iterations"));
+  EXPECT_THAT(HelpFlags("refine"), ElementsAre("out", "residual", "weights", "max_iterations", "montecarlo"));
+  EXPECT_THAT(HelpFlags("montecarlo"), ElementsAre("out", "trials", "seed", "digits", "threads"));
   EXPECT_THAT(HelpFlags("compare"), ElementsAre("surface"));
   EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out"));
+  EXPECT_THAT(HelpFlags("propagate"), UnorderedElementsAre("point", "points_file", "units", "distance", "out"));
   EXPECT_THAT(HelpFlags("simulate"),
               UnorderedElementsAre("out", "M", "N", "tilt_x", "tilt_y", "placements", "profiles", "points", "sweep",
                                    "line_length", "noise", "line_correlation", "encoder_jitter", "form", "form_kind",
@@ -110,7 +112,7 @@ TEST_F(FlagsTest, AFlagOfAnotherCommandIsRefused) {
 
 TEST_F(FlagsTest, AMissingOrSecondArgumentIsRefused) {
   const std::string data = MakeData().string();
-  for (const char* command : {"refine", "compare"}) {
+  for (const char* command : {"refine", "montecarlo", "compare"}) {
     const Outcome none = RunScancal({command}), two = RunScancal({command, data, data});
     EXPECT_EQ(none.exit_code, 1);
     EXPECT_EQ(two.exit_code, 1);
@@ -129,6 +131,16 @@ TEST_F(FlagsTest, AFlagWithAWrongValueIsRefused) {
   EXPECT_THAT(OneSentence(Refine(data, {"--residual=deep"})),
               AllOf(HasSubstr("\"deep\""), HasSubstr("depth or plane")));
   EXPECT_THAT(OneSentence(Refine(data, {"--max_iterations=0"})), HasSubstr("--max_iterations: expected 1 or more"));
+  for (const char* trials : {"99", "-1", "200000000"})
+    EXPECT_THAT(OneSentence(Refine(data, {std::string("--montecarlo=") + trials})),
+                AllOf(HasSubstr(std::string("--montecarlo: found ") + trials), HasSubstr("100 to 10000000 trials")));
+  for (const auto& [flag, value, expected] :
+       {std::tuple{"trials", "0", "100 to 10000000"}, std::tuple{"digits", "3", "1 or 2"},
+        std::tuple{"threads", "-1", "0 (one for every core) to 1000"}}) {
+    const Outcome outcome = RunScancal({"montecarlo", data.string(), out, std::string("--") + flag + "=" + value});
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(OneSentence(outcome), AllOf(HasSubstr(std::string(flag) + ": found " + value), HasSubstr(expected)));
+  }
   EXPECT_THAT(OneSentence(RunScancal({"simulate", out, "--format=xls"})),
               AllOf(HasSubstr("\"xls\""), HasSubstr("csv or npy")));
   for (const char* flag : {"--profiles=0", "--points=-1", "--placements=0", "--sweep=180", "--sweep=-1", "--noise=-1",

@@ -90,5 +90,20 @@ TEST_F(InterruptionTest, CtrlCLeavesNoPointCloud) {
   }
 }
 
+TEST_F(InterruptionTest, CtrlCInAMonteCarloLeavesTheOldResult) {
+  fs::create_directory(Path("out"));
+  for (const int signal : {SIGINT, SIGTERM}) {
+    WriteWhole(Path("out") / "calibration.json", "old");
+    RunningProgram program(
+        {"montecarlo", data_.string(), "--trials=10000000", "--threads=2", "--out=" + Path("out").string()});
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    ASSERT_FALSE(program.HasEnded());
+    program.Signal(signal);
+    EXPECT_EQ(program.Wait().signal, signal);
+    EXPECT_THAT(NamesIn(Path("out")), ElementsAre("calibration.json"));
+    EXPECT_EQ(ReadWhole(Path("out") / "calibration.json"), "old");
+  }
+}
+
 }  // namespace
 }  // namespace scancal

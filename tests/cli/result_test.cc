@@ -43,7 +43,7 @@ TEST_F(ResultTest, EveryKeyOfTheSpecificationIsThere) {
                           "residuals", "volume",  "data",    "inputs",           "command",     "version"})
     EXPECT_TRUE(result_.contains(key)) << key;
   for (const char* key :
-       {"name", "unit", "role", "value", "u", "k", "U", "dof", "u_naive", "u_clustered", "u_jackknife"})
+       {"name", "unit", "role", "value", "u", "k", "U", "dof", "u_naive", "u_clustered", "u_jackknife", "u_bootstrap"})
     EXPECT_TRUE(ParameterOf(result_, "M").contains(key)) << key;
   for (const char* key : {"step", "S", "M", "N", "nodes"}) EXPECT_TRUE(result_["grid"].contains(key)) << key;
   for (const char* key : {"name", "points", "set_aside", "normal", "distance", "rms"})

@@ -36,10 +36,13 @@ class Scenes {
     return row;
   }
 
-  Row OtherForm(double microns) const {
+  // The specification wants other smooth functions held as well. Bent plates are not: their form is nearly all in the
+  // mode of degree 2 along the longer side, which M and N feel most, and of which the declared ensemble has only a
+  // quarter.
+  Row OtherForm(double microns, FormKind kind) const {
     Row row = Form(microns);
-    row.name += ", other functions";
-    row.scene.form_kind = FormKind::kSmooth;
+    row.name += kind == FormKind::kSmooth ? ", other functions" : ", bent plates";
+    row.scene.form_kind = kind;
     row.most = 1;
     row.widest = std::numeric_limits<double>::infinity();
     return row;
@@ -72,15 +75,17 @@ class Scenes {
 
 std::vector<Row> Rows(double sweep_deg) {
   const Scenes of(sweep_deg);
+  using enum FormKind;
   return {of.White(),
           of.Jitter(5),
           of.Jitter(20),
           of.Form(2),
           of.Form(5),
           of.Form(15),
-          of.OtherForm(2),
-          of.OtherForm(5),
-          of.OtherForm(15),
+          of.OtherForm(2, kSmooth),
+          of.OtherForm(5, kSmooth),
+          of.OtherForm(15, kSmooth),
+          of.OtherForm(5, kBent),
           of.LineCorrelation(40),
           of.LineCorrelation(130),
           of.All()};

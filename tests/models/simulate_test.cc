@@ -49,7 +49,7 @@ TEST(PlateForm, OfModesHasItsRmsOverTheEnsemble) {
 }
 
 TEST(PlateForm, HasNoPlane) {
-  for (const FormKind kind : {FormKind::kModes, FormKind::kSmooth}) {
+  for (const FormKind kind : {FormKind::kModes, FormKind::kSmooth, FormKind::kBent}) {
     for (uint64_t seed = 1; seed <= 10; ++seed) {
       const PlateForm form(kind, 1, kOver, Random(seed, 0));
       EXPECT_NEAR(Mean(form, [](double height, double, double) { return height; }), 0, 0.01);
@@ -73,7 +73,7 @@ TEST(PlateForm, OfWavesHasItsRmsItselfAndIsNoSumOfModes) {
 
 TEST(PlateForm, StretchesToAnotherRectangle) {
   const PlateRectangle wider = {0, 0, 2 * kOver.half_u, 2 * kOver.half_v};
-  for (const FormKind kind : {FormKind::kModes, FormKind::kSmooth}) {
+  for (const FormKind kind : {FormKind::kModes, FormKind::kSmooth, FormKind::kBent}) {
     const PlateForm a(kind, 1, kOver, Random(1, 0)), b(kind, 1, wider, Random(1, 0));
     EXPECT_NEAR(a.At(30 + 50, -10 + 40), b.At(100, 80), 1e-12);
   }
@@ -128,7 +128,7 @@ TEST(SimulateTurntable, OnePlateHasOneForm) {
   TurntableScene scene = Scene();
   scene.form = 0.01;
   scene.one_plate = true;
-  for (const FormKind kind : {FormKind::kModes, FormKind::kSmooth}) {
+  for (const FormKind kind : {FormKind::kModes, FormKind::kSmooth, FormKind::kBent}) {
     scene.form_kind = kind;
     const auto heights = Heights(scene);
     const double correlation =
@@ -189,7 +189,7 @@ TEST(SimulateTurntable, OneProfileOfOnePointMayHaveForm) {
   TurntableScene scene = Scene();
   scene.profiles = scene.points = 1;
   scene.form = 0.01;
-  for (const FormKind kind : {FormKind::kModes, FormKind::kSmooth}) {
+  for (const FormKind kind : {FormKind::kModes, FormKind::kSmooth, FormKind::kBent}) {
     scene.form_kind = kind;
     EXPECT_LT(std::abs(Heights(scene)[0][0]), 0.1);
   }

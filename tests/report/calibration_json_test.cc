@@ -8,6 +8,7 @@ namespace scancal {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -49,6 +50,16 @@ Calibration SomeCalibration() {
   return c;
 }
 
+Calibration WithBudgetAndVolume() {
+  Calibration c = SomeCalibration();
+  c.budget = {{"encoder_jitter", 'A', Unit::kRad, 2e-5, {}, {0.01, 0.015}, {0.8, 0.6}, 100},
+              {"tilt_x", 'B', Unit::kRad, 2e-4, {3.5, -1.25}, {7e-4, 2.5e-4}, {0.2, 0.4}, INFINITY}};
+  c.volume = {{"alpha", "y", "X", "Y", "Z", "U_x", "U_y", "U_z", "U_max"},
+              {Unit::kRad, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm},
+              {{-0.25, 40, 1, 2, 3, 0.01, 0.02, 0.03, 0.031}, {0.25, 160, 4, 5, 6, 0.1, 0.2, 0.3, 0.312}}};
+  return c;
+}
+
 TEST(CalibrationJsonTest, ValuesArriveUnderTheirKeys) {
   const Json json = ToJson(SomeCalibration());
   EXPECT_EQ(json["scancal"], 1);
@@ -81,6 +92,69 @@ TEST(CalibrationJsonTest, WhatALaterCommandNeedsComesBack) {
   for (size_t k = 0; k < before.parameters.size(); ++k) {
     EXPECT_EQ(after->parameters[k].name, before.parameters[k].name);
     EXPECT_EQ(after->parameters[k].value, before.parameters[k].value);  // to the last digit
+  }
+}
+
+TEST(CalibrationJsonTest, UncertaintiesComeBack) {
+  const Calibration before = WithBudgetAndVolume();
+  const auto after = CalibrationFromJson(Json::parse(ToJson(before).dump(2)), "calibration.json");
+  ASSERT_TRUE(after.ok()) << after.error().message;
+  for (size_t k = 0; k < before.parameters.size(); ++k) {
+    const Parameter &was = before.parameters[k], &is = after->parameters[k];
+    EXPECT_EQ(is.role, was.role);
+    EXPECT_EQ(is.unit, was.unit);
+    EXPECT_EQ(is.u, was.u);
+    if (was.role != Role::kEstimate) continue;
+    EXPECT_EQ(std::tuple(is.k, is.U, is.dof), std::tuple(was.k, was.U, was.dof));
+  }
+  EXPECT_EQ(after->estimated, before.estimated);
+  EXPECT_EQ(after->covariance, before.covariance);
+  ASSERT_EQ(after->budget.size(), 2u);
+  for (size_t k = 0; k < 2; ++k) {
+    const BudgetLine &was = before.budget[k], &is = after->budget[k];
+    EXPECT_EQ(std::tuple(is.source, is.type, is.unit, is.u, is.dof),
+              std::tuple(was.source, was.type, was.unit, was.u, was.dof));
+    EXPECT_EQ(is.sensitivity, was.sensitivity);
+    EXPECT_EQ(is.contribution, was.contribution);
+    EXPECT_EQ(is.share, was.share);
+  }
+  EXPECT_EQ(after->volume.columns, before.volume.columns);
+  EXPECT_EQ(after->volume.units, before.volume.units);
+  EXPECT_EQ(after->volume.rows, before.volume.rows);
+}
+
+TEST(CalibrationJsonTest, WhatWasNotFiniteComesBackAsNoNumber) {
+  Calibration before = WithBudgetAndVolume();
+  before.covariance(0, 1) = before.parameters[0].dof = before.volume.rows[1].back() = INFINITY;
+  const auto after = CalibrationFromJson(ToJson(before), "f");
+  ASSERT_TRUE(after.ok()) << after.error().message;
+  EXPECT_TRUE(std::isnan(after->covariance(0, 1)));
+  EXPECT_EQ(after->covariance(1, 1), before.covariance(1, 1));
+  EXPECT_EQ(after->parameters[0].dof, INFINITY);
+  EXPECT_TRUE(std::isnan(after->volume.rows[1].back()));
+}
+
+TEST(CalibrationJsonTest, DamagedUncertaintiesAreErrors) {
+  for (const auto& [key, damaged] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"covariance_of", R"([5])"},
+           {"covariance_of", R"(["M", "no parameter"])"},
+           {"covariance", R"([[1, 2]])"},
+           {"covariance", R"([[1, 2], [3]])"},
+           {"covariance", R"([[1, 2], [3, "4"]])"},
+           {"covariance", R"(5)"},
+           {"budget", R"({})"},
+           {"budget", R"([5])"},
+           {"budget", R"([{"source": "tilt_x", "sensitivity": {"M": 1}, "u": {}, "share": {}}])"},
+           {"budget", R"([{"sensitivity": {}, "u": {}, "share": {}}])"},
+           {"volume", R"(5)"},
+           {"volume", R"({"columns": ["X"], "units": [], "rows": []})"},
+           {"volume", R"({"columns": ["X"], "units": ["mm"], "rows": [[1, 2]]})"},
+           {"volume", R"({"columns": ["X"], "units": ["mm"], "rows": [["1"]]})"}}) {
+    Json json = ToJson(WithBudgetAndVolume());
+    json[key] = Json::parse(damaged);
+    const auto after = CalibrationFromJson(json, "some.json");
+    ASSERT_FALSE(after.ok()) << key << damaged;
+    EXPECT_THAT(after.error().message, AllOf(StartsWith("some.json: expected "), HasSubstr("calibration.json?")));
   }
 }
 
@@ -136,6 +210,8 @@ TEST(CalibrationJsonTest, AnOldFileLoadsForEver) {  // the specification's examp
   const auto calibration = CalibrationFromJson(json, "f");
   ASSERT_TRUE(calibration.ok()) << calibration.error().message;
   EXPECT_EQ(calibration->Find("M")->value, 123.0021);
+  EXPECT_TRUE(calibration->estimated.empty());
+  EXPECT_TRUE(calibration->volume.rows.empty());
 }
 
 TEST(CalibrationJsonTest, OtherDocumentsAreErrorsNotCrashes) {
@@ -146,12 +222,77 @@ TEST(CalibrationJsonTest, OtherDocumentsAreErrorsNotCrashes) {
         R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [5]})",
         R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [{"name": "M"}]})",
         R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [{"name": "M", "value": "1"}]})",
-        R"({"scancal": 1, "model": "turntable", "status": 5, "parameters": []})"}) {
+        R"({"scancal": 1, "model": "turntable", "status": 5, "parameters": []})",
+        R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [], "montecarlo": 5})",
+        R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [], "montecarlo": {"trials": "1"}})",
+        R"({"scancal": 1, "model": "turntable", "status": "ok", "parameters": [], "montecarlo": {"trials": 1}})"}) {
     const auto calibration = CalibrationFromJson(Json::parse(text), "some.json");
     ASSERT_FALSE(calibration.ok()) << text;
     EXPECT_THAT(calibration.error().message, AllOf(StartsWith("some.json: expected "), HasSubstr("calibration.json?")))
         << text;
   }
+}
+
+MonteCarloSummary SomeMonteCarlo() {
+  MonteCarloSummary summary;
+  summary.trials = 10'000;
+  summary.failed = 3;
+  summary.seed = 18'446'744'073'709'551'615u;
+  summary.parameters = {
+      {"M", 123.0023, 0.0112, 122.9801, 123.0239, 122.9801, 123.0241, 5e-3, "PASS", {122, 123, 124}, {4000, 5997}},
+      {"N", 409.1, 0.02, 409.06, 409.14, 409.06, std::numeric_limits<double>::infinity(), 5e-3, "FAIL", {}, {}}};
+  return summary;
+}
+
+TEST(CalibrationJsonTest, TheMonteCarloIsEmptyOrWhole) {
+  Calibration c = SomeCalibration();
+  EXPECT_EQ(ToJson(c)["montecarlo"], Json::object());
+  c.monte_carlo = SomeMonteCarlo();
+  const Json json = Json::parse(ToJson(c).dump())["montecarlo"];
+  EXPECT_EQ(json["trials"], 10'000);
+  EXPECT_EQ(json["failed"], 3);
+  EXPECT_EQ(json["seed"], c.monte_carlo.seed);
+  EXPECT_EQ(json["digits"], 1);
+  EXPECT_EQ(json["stable"], true);
+  const Json& m = json["parameters"][0];
+  EXPECT_EQ(m["name"], "M");
+  EXPECT_EQ(m["mean"], 123.0023);
+  EXPECT_EQ(m["u"], 0.0112);
+  EXPECT_EQ(m["low"], 122.9801);
+  EXPECT_EQ(m["high"], 123.0239);
+  EXPECT_EQ(m["gum_low"], 122.9801);
+  EXPECT_EQ(m["gum_high"], 123.0241);
+  EXPECT_EQ(m["tolerance"], 5e-3);
+  EXPECT_EQ(m["verdict"], "PASS");
+  EXPECT_EQ(m["histogram"]["edges"], Json({122.0, 123.0, 124.0}));
+  EXPECT_EQ(m["histogram"]["counts"], Json({4000, 5997}));
+  EXPECT_TRUE(json["parameters"][1]["gum_high"].is_null());
+
+  const auto back = CalibrationFromJson(Json::parse(ToJson(c).dump()), "f");
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back->monte_carlo.seed, c.monte_carlo.seed);
+  ASSERT_EQ(back->monte_carlo.parameters.size(), 2u);
+  EXPECT_EQ(back->monte_carlo.parameters[0].high, 123.0239);
+  EXPECT_EQ(back->monte_carlo.parameters[0].verdict, "PASS");
+  EXPECT_EQ(back->monte_carlo.parameters[0].edges, c.monte_carlo.parameters[0].edges);
+  EXPECT_EQ(back->monte_carlo.parameters[0].counts, c.monte_carlo.parameters[0].counts);
+  EXPECT_TRUE(std::isnan(back->monte_carlo.parameters[1].gum_high));
+  c.monte_carlo = {};
+  EXPECT_EQ(CalibrationFromJson(ToJson(c), "f")->monte_carlo.trials, 0);
+}
+
+TEST(TextTest, TheMonteCarloStandsBesideValueAndU) {
+  Calibration c = SomeCalibration();
+  EXPECT_THAT(ToText(c), Not(HasSubstr("Monte Carlo")));
+  c.monte_carlo = SomeMonteCarlo();
+  EXPECT_THAT(ToText(c),
+              AllOf(HasSubstr("Monte Carlo: 10000 trials, seed 18446744073709551615; value +- U validated to "
+                              "one digit of u (JCGM 101, clause 8)\n"),
+                    ContainsRegex("M +123.002 +mm +0.011 +122.980 +123.024 +122.980 +123.024 +0.0050 +PASS"),
+                    ContainsRegex("N .*infinite .*FAIL"), Not(HasSubstr("too few"))));
+  c.monte_carlo.digits = 2;
+  c.monte_carlo.stable = false;
+  EXPECT_THAT(ToText(c), AllOf(HasSubstr("two digits"), HasSubstr("too few")));
 }
 
 TEST(TextTest, TheReportNamesEverythingThatMatters) {
@@ -165,6 +306,16 @@ TEST(TextTest, TheReportNamesEverythingThatMatters) {
   EXPECT_THAT(text, AllOf(HasSubstr("not a traceable uncertainty"), HasSubstr("\nstatus: ok\n")));
   EXPECT_THAT(text, Not(HasSubstr("tilt_y")));  // held at 0: nothing to tell
   EXPECT_THAT(text, Not(HasSubstr("nan")));
+}
+
+TEST(TextTest, OneLineSumsUpTheVolume) {
+  Calibration c = WithBudgetAndVolume();
+  const std::string of_points = "expanded uncertainty of a measured point over the scanned volume: ";
+  EXPECT_THAT(ToText(c), HasSubstr(of_points + "0.031 to 0.31 mm, largest at alpha = 14.3 deg, y = 160 mm; the noise"));
+  c.volume.rows[0].back() = c.volume.rows[1].back();
+  EXPECT_THAT(ToText(c), HasSubstr(of_points + "0.31 mm throughout; the noise"));
+  c.volume = {};
+  EXPECT_THAT(ToText(c), Not(HasSubstr("volume")));
 }
 
 TEST(TextTest, DeclaredInfluencesDropTheFootnote) {

@@ -97,6 +97,22 @@ TEST(Propagate, EqualsTheTextbookForEveryScope) {
   }
 }
 
+TEST(Propagate, ASourceOfSeveralQuantitiesHasNoSensitivity) {
+  LineModel model;
+  for (const int k : {LineModel::kCurvature, LineModel::kShift}) {
+    model.quantity(k).role = Role::kConsider;
+    model.quantity(k).scope = Scope::kSystem;
+    model.quantity(k).u = 0.01;
+    model.quantity(k).source = "both";
+  }
+  const Problem problem = MakeProblem<LineModel>(std::make_shared<LineModel>(model), LineScene().Make());
+  const Estimate fit = Refine(problem, NominalStart(problem)).estimate;
+  const Budget budget = Propagate(problem, fit, Linearize(problem, fit, Storey::kViews));
+  ASSERT_EQ(budget.lines.size(), 1u);
+  EXPECT_EQ(budget.lines[0].sensitivity.size(), 0);
+  EXPECT_GT(budget.lines[0].covariance(0, 0), 0);
+}
+
 TEST(Summarize, AddsWhatWasConsideredToTheClusteredFigure) {
   LineModel model;
   model.quantity(LineModel::kCurvature).role = Role::kConsider;

@@ -1,0 +1,45 @@
+#include "apps/calibrate.h"
+#include <gflags/gflags.h>
+#include <cstdio>
+#include <filesystem>
+#include "apps/command.h"
+#include "apps/load.h"
+#include "io/json_file.h"
+#include "report/calibration_json.h"
+#include "report/text.h"
+
+DEFINE_string(out, "", "folder or file to write");
+
+namespace scancal {
+namespace {
+
+constexpr int kFewestTrials = 100, kMostTrials = 10'000'000;
+
+Result<Calibration> Calibrated(const std::vector<std::string>& arguments, const RefineChoice& choice) {
+  SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, LoadAndEcho(arguments));
+  SCANCAL_ASSIGN_OR_RETURN(Calibration calibration, scanner->Calibrate(choice));
+  SCANCAL_ASSIGN_OR_RETURN(calibration.inputs, InputsOf(*scanner));
+  calibration.command = CommandLine();
+  calibration.version = SCANCAL_VERSION;
+  Json json = ToJson(calibration);
+  SCANCAL_ASSIGN_OR_RETURN(json["data"], scanner->Data());
+  SCANCAL_RETURN_IF_ERROR(WriteJson(std::filesystem::path(FLAGS_out) / "calibration.json", json));
+  return calibration;
+}
+
+}  // namespace
+
+int CalibrateAndReport(const std::vector<std::string>& arguments, const RefineChoice& choice) {
+  const Result<Calibration> calibration = Calibrated(arguments, choice);
+  if (!calibration.ok()) return Complain(calibration.error().message);
+  std::printf("%s", ToText(*calibration).c_str());
+  return calibration->ok() ? kTrusted : kUnreliable;
+}
+
+Result<void> CheckTrials(const std::string& flag, int trials) {
+  if (trials >= kFewestTrials && trials <= kMostTrials) return {};
+  return Error{"--" + flag + ": found " + std::to_string(trials) + ", expected " + std::to_string(kFewestTrials) +
+               " to " + std::to_string(kMostTrials) + " trials"};
+}
+
+}  // namespace scancal

@@ -1,0 +1,63 @@
+// scancal propagate CALIBRATION
+#include <gflags/gflags.h>
+#include <cstdio>
+#include "apps/command.h"
+#include "io/json_file.h"
+#include "io/output_file.h"
+#include "models/models.h"
+#include "report/calibration_json.h"
+#include "report/propagation.h"
+
+DECLARE_string(out);
+DEFINE_string(point, "", "readings of one or more points, \"10,50,-20; 12,50,-20\"; may be given again");
+DEFINE_string(points_file, "", "table of such readings: CSV with named columns, or .npy");
+DEFINE_string(units, "mm,deg", "of these readings: mm, m or um, and deg or rad");
+DEFINE_bool(distance, false, "also the distance of each point from the one before");
+
+namespace scancal {
+namespace {
+
+// gflags keeps the last value of a flag only, but shows its validator every one.
+std::string& TypedPoints() {
+  static std::string typed;
+  return typed;
+}
+bool KeepEveryPoint(const char*, const std::string& value) {
+  TypedPoints() += value + ";";
+  return true;
+}
+
+Result<bool> Propagated(const std::string& file) {
+  SCANCAL_ASSIGN_OR_RETURN(const Units units, ParseUnits(FLAGS_units));
+  SCANCAL_ASSIGN_OR_RETURN(const Json json, ReadJson(file));
+  SCANCAL_ASSIGN_OR_RETURN(const Calibration calibration, CalibrationFromJson(json, file));
+  SCANCAL_ASSIGN_OR_RETURN(const ScannerKind* kind, FindScannerKind(calibration.model, file + ": model"));
+  SCANCAL_ASSIGN_OR_RETURN(const Propagation propagation,
+                           kind->propagate(calibration, {TypedPoints(), FLAGS_points_file, units}, FLAGS_distance));
+  if (!FLAGS_out.empty()) SCANCAL_RETURN_IF_ERROR(WriteFile(FLAGS_out, ToCsv(propagation)));
+  std::printf("%s", ToText(propagation).c_str());
+  for (const std::string& warning : propagation.warnings)
+    std::fprintf(stderr, "scancal: warning: %s\n", warning.c_str());
+  if (!calibration.ok()) std::fprintf(stderr, "scancal: warning: %s has status unreliable\n", file.c_str());
+  return calibration.ok();
+}
+
+int Run(const std::vector<std::string>& arguments) {
+  if (arguments.size() != 1)
+    return Complain("found " + std::to_string(arguments.size()) + " arguments, expected one: a calibration.json");
+  const Result<bool> trusted = Propagated(arguments[0]);
+  if (!trusted.ok()) return Complain(trusted.error().message);
+  return *trusted ? kTrusted : kUnreliable;
+}
+
+}  // namespace
+
+const Command kPropagateCommand = {"propagate",
+                                   "CALIBRATION",
+                                   "uncertainty of points and distances that the calibrated scanner measures",
+                                   {{"point"}, {"points_file"}, {"units"}, {"distance"}, {"out", "CSV file to write"}},
+                                   &Run};
+
+}  // namespace scancal
+
+DEFINE_validator(point, &scancal::KeepEveryPoint);

@@ -1,0 +1,92 @@
+#include "report/propagation.h"
+#include <fmt/format.h>
+#include <cmath>
+#include <numbers>
+#include "report/text_table.h"
+
+namespace scancal {
+namespace {
+
+constexpr const char* kAxes[] = {"X", "Y", "Z"};
+
+double Shown(double value, Unit unit) { return unit == Unit::kRad ? value / (std::numbers::pi / 180) : value; }
+const char* ShownUnit(Unit unit) { return unit == Unit::kRad ? "deg" : Name(unit); }
+
+std::string PointTable(const Propagation& propagation) {
+  std::vector<std::string> header = {"point"};
+  for (size_t k = 0; k < propagation.reading.size(); ++k)
+    header.push_back(propagation.reading[k] + "/" + ShownUnit(propagation.units[k]));
+  for (const char* form : {"{}/mm", "U({})/mm"})
+    for (const char* axis : kAxes) header.push_back(fmt::format(fmt::runtime(form), axis));
+  header.insert(header.end(), {"largest U/mm", "k", "dof"});
+  TextTable table(header);
+  for (size_t i = 0; i < propagation.points.size(); ++i) {
+    const PropagatedPoint& point = propagation.points[i];
+    const MeasurandUncertainty& uncertainty = point.uncertainty;
+    std::vector<std::string> row = {std::to_string(i + 1)};
+    for (size_t k = 0; k < point.reading.size(); ++k)
+      row.push_back(Significant(Shown(point.reading[k], propagation.units[k]), 6));
+    for (int k = 0; k < 3; ++k)
+      row.push_back(Concise(point.position[k], std::sqrt(std::max(0.0, uncertainty.covariance(k, k)))));
+    for (int k = 0; k < 3; ++k) row.push_back(Significant(uncertainty.U[k], 2));
+    row.insert(row.end(),
+               {Significant(uncertainty.U_max, 2), Significant(uncertainty.k, 3), Count(std::floor(uncertainty.dof))});
+    table.Add(row);
+  }
+  return table.Text();
+}
+
+std::string DistanceTable(const Propagation& propagation) {
+  TextTable table({"distance", "value/mm", "u/mm", "U/mm", "k", "dof"});
+  for (const PropagatedDistance& distance : propagation.distances) {
+    const MeasurandUncertainty& uncertainty = distance.uncertainty;
+    const double u = std::sqrt(std::max(0.0, uncertainty.covariance(0, 0)));
+    table.Add({fmt::format("{} to {}", distance.from + 1, distance.to + 1), Concise(distance.value, u),
+               Significant(u, 2), Significant(uncertainty.U_max, 2), Significant(uncertainty.k, 3),
+               Count(std::floor(uncertainty.dof))});
+  }
+  return table.Text();
+}
+
+}  // namespace
+
+std::string ToText(const Propagation& propagation) {
+  std::string text = PointTable(propagation);
+  if (!propagation.distances.empty()) text += "\n" + DistanceTable(propagation);
+  text += "\nin brackets: u, in units of the last digit; U = k u: 95 %, largest over all directions\n";
+  for (const std::string& note : propagation.notes) text += note + "\n";
+  return text;
+}
+
+std::string ToCsv(const Propagation& propagation) {
+  std::string text;
+  for (size_t k = 0; k < propagation.reading.size(); ++k)
+    text += propagation.reading[k] + "_" + ShownUnit(propagation.units[k]) + ",";
+  text += "X_mm,Y_mm,Z_mm,u_X_mm,u_Y_mm,u_Z_mm,cov_XY_mm2,cov_XZ_mm2,cov_YZ_mm2,U_X_mm,U_Y_mm,U_Z_mm,U_max_mm,k,dof";
+  if (!propagation.distances.empty()) text += ",distance_mm,u_distance_mm,U_distance_mm,k_distance,dof_distance";
+  text += "\n";
+  for (size_t i = 0; i < propagation.points.size(); ++i) {
+    const PropagatedPoint& point = propagation.points[i];
+    const MeasurandUncertainty& of_point = point.uncertainty;
+    for (size_t k = 0; k < point.reading.size(); ++k)
+      text += fmt::format("{},", Shown(point.reading[k], propagation.units[k]));
+    const auto& c = of_point.covariance;
+    text += fmt::format("{},{},{},", point.position[0], point.position[1], point.position[2]);
+    for (int k = 0; k < 3; ++k) text += fmt::format("{},", std::sqrt(std::max(0.0, c(k, k))));
+    text += fmt::format("{},{},{},{},{},{},{},{},{}", c(0, 1), c(0, 2), c(1, 2), of_point.U[0], of_point.U[1],
+                        of_point.U[2], of_point.U_max, of_point.k, of_point.dof);
+    if (!propagation.distances.empty()) {
+      if (i == 0) {
+        text += ",,,,,";
+      } else {
+        const PropagatedDistance& distance = propagation.distances[i - 1];
+        text += fmt::format(",{},{},{},{},{}", distance.value, std::sqrt(distance.uncertainty.covariance(0, 0)),
+                            distance.uncertainty.U_max, distance.uncertainty.k, distance.uncertainty.dof);
+      }
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace scancal

@@ -1,0 +1,144 @@
+#include "report/uncertainty_json.h"
+#include <limits>
+#include <optional>
+
+namespace scancal {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+
+const Json& At(const Json& object, const char* key) {
+  static const Json nothing;
+  return object.is_object() && object.contains(key) ? object[key] : nothing;
+}
+
+double NumberAt(const Json& object, const char* key, double otherwise = kNotANumber) {
+  const Json& value = At(object, key);
+  return value.is_number() ? value.get<double>() : otherwise;
+}
+
+std::string TextAt(const Json& object, const char* key) {
+  const Json& value = At(object, key);
+  return value.is_string() ? value.get<std::string>() : "";
+}
+
+template <class Enum>
+std::optional<Enum> Named(const std::string& name, std::initializer_list<Enum> all) {
+  for (const Enum each : all)
+    if (name == Name(each)) return each;
+  return std::nullopt;
+}
+
+std::optional<Unit> UnitNamed(const std::string& name) { return Named(name, {Unit::kMm, Unit::kRad, Unit::kOne}); }
+
+std::optional<std::vector<std::string>> Texts(const Json& list) {
+  if (!list.is_array()) return std::nullopt;
+  std::vector<std::string> texts;
+  for (const Json& each : list) {
+    if (!each.is_string()) return std::nullopt;
+    texts.push_back(each);
+  }
+  return texts;
+}
+
+// null is not a number; anything else that is none makes the list none.
+std::optional<std::vector<double>> Numbers(const Json& list, size_t size) {
+  if (!list.is_array() || list.size() != size) return std::nullopt;
+  std::vector<double> numbers;
+  for (const Json& each : list) {
+    if (!each.is_number() && !each.is_null()) return std::nullopt;
+    numbers.push_back(each.is_null() ? kNotANumber : each.get<double>());
+  }
+  return numbers;
+}
+
+// {"M": 0.1, "N": 0.2}: all of the names, or none.
+std::optional<std::vector<double>> ByName(const Json& object, const std::vector<std::string>& names) {
+  if (!object.is_object()) return std::nullopt;
+  std::vector<double> numbers;
+  if (object.empty()) return numbers;
+  for (const std::string& name : names) {
+    if (!object.contains(name)) return std::nullopt;
+    numbers.push_back(NumberAt(object, name.c_str()));
+  }
+  return numbers;
+}
+
+void ReadParameter(const Json& json, Parameter* parameter) {
+  parameter->unit = UnitNamed(TextAt(json, "unit")).value_or(Unit::kOne);
+  parameter->role = Named(TextAt(json, "role"), {Role::kEstimate, Role::kConsider, Role::kHold}).value_or(Role::kHold);
+  parameter->u = NumberAt(json, "u", 0);
+  parameter->k = NumberAt(json, "k", 0);
+  parameter->U = NumberAt(json, "U", 0);
+  parameter->dof = NumberAt(json, "dof", kInfinity);
+}
+
+bool ReadCovariance(const Json& json, Calibration* calibration) {
+  const auto names = Texts(At(json, "covariance_of"));
+  const Json& matrix = At(json, "covariance");
+  if (!names || !matrix.is_array() || matrix.size() != names->size()) return false;
+  const auto n = std::ssize(*names);
+  calibration->covariance.resize(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto row = Numbers(matrix[static_cast<size_t>(i)], names->size());
+    if (!row || !calibration->Find((*names)[i])) return false;
+    calibration->covariance.row(i) = Eigen::Map<const Eigen::RowVectorXd>(row->data(), n);
+  }
+  calibration->estimated = *names;
+  return true;
+}
+
+bool ReadBudget(const Json& json, Calibration* calibration) {
+  const Json& budget = At(json, "budget");
+  if (!budget.is_array()) return false;
+  for (const Json& each : budget) {
+    BudgetLine& line = calibration->budget.emplace_back();
+    line.source = TextAt(each, "source");
+    line.type = TextAt(each, "type") == "B" ? 'B' : 'A';
+    line.unit = UnitNamed(TextAt(each, "unit")).value_or(Unit::kOne);
+    line.u = NumberAt(each, "value");
+    line.dof = NumberAt(each, "dof", kInfinity);
+    for (const auto& [key, to] :
+         {std::pair{"sensitivity", &line.sensitivity}, {"u", &line.contribution}, {"share", &line.share}}) {
+      const auto numbers = ByName(At(each, key), calibration->estimated);
+      if (!numbers) return false;
+      *to = *numbers;
+    }
+    if (line.source.empty()) return false;
+  }
+  return true;
+}
+
+bool ReadVolume(const Json& json, UncertaintyMap* volume) {
+  const auto columns = Texts(At(json, "columns")), units = Texts(At(json, "units"));
+  const Json& rows = At(json, "rows");
+  if (!columns || !units || units->size() != columns->size() || !rows.is_array()) return false;
+  volume->columns = *columns;
+  for (const std::string& name : *units) volume->units.push_back(UnitNamed(name).value_or(Unit::kOne));
+  for (const Json& each : rows) {
+    const auto row = Numbers(each, columns->size());
+    if (!row) return false;
+    volume->rows.push_back(*row);
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<void> ReadUncertainties(const Json& json, const std::string& file, Calibration* calibration) {
+  const auto expected = [&](const std::string& what) {
+    return Error{file + ": expected " + what + "; is it a calibration.json?"};
+  };
+  for (size_t k = 0; k < calibration->parameters.size(); ++k)
+    ReadParameter(json["parameters"][k], &calibration->parameters[k]);
+  if (json.contains("covariance_of") && !ReadCovariance(json, calibration))
+    return expected("a square \"covariance\" of the parameters in \"covariance_of\"");
+  if (json.contains("budget") && !ReadBudget(json, calibration))
+    return expected("a list of sources with numbers for the estimated parameters as \"budget\"");
+  if (json.contains("volume") && !json["volume"].empty() && !ReadVolume(json["volume"], &calibration->volume))
+    return expected("a table with columns, units and rows as \"volume\"");
+  return {};
+}
+
+}  // namespace scancal
