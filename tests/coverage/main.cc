@@ -1,8 +1,11 @@
-// scancal_coverage [--sets=1000] [--row=NAME]: the table of the README. See scripts/coverage.
+// scancal_coverage [--sets=1000] [--sweep=44] [--row=NAME]: the table of the README. See scripts/coverage.
 #include <fmt/format.h>
 #include <glog/logging.h>
-#include <atomic>
+#include <cctype>
+#include <chrono>
 #include <map>
+#include <mutex>
+#include "io/progress.h"
 #include "tests/coverage/tally.h"
 
 namespace scancal::coverage {
@@ -10,44 +13,74 @@ namespace {
 
 constexpr int kThreads = 2;
 
-// What was said, and how often: numbers left out.
-std::string Without(const std::string& text) {
-  std::string kind;
-  for (const char c : text)
-    if (!std::isdigit(static_cast<unsigned char>(c)) && c != '.') kind += c;
-  return kind.substr(0, 60);
+struct Options {
+  size_t sets = 1000;
+  double sweep_deg = 44;
+  std::string row;  // empty: all
+};
+
+Options Parse(int argc, char** argv) {
+  Options options;
+  for (int k = 1; k < argc; ++k) {
+    const std::string argument = argv[k], value = argument.substr(std::min(argument.size(), argument.find('=') + 1));
+    if (argument.starts_with("--sets=")) {
+      options.sets = std::stoul(value);
+    } else if (argument.starts_with("--sweep=")) {
+      options.sweep_deg = std::stod(value);
+    } else {
+      CHECK(argument.starts_with("--row=")) << "usage: scancal_coverage [--sets=1000] [--sweep=44] [--row=NAME]";
+      options.row = value;
+    }
+  }
+  CHECK_GT(options.sets, 0);
+  return options;
 }
 
-void Report(const std::vector<Trial>& trials) {
+// The beginning of a sentence, the same for other numbers.
+std::string KindOf(const std::string& sentence) {
+  constexpr size_t kLength = 60;
+  std::string kind = sentence.substr(0, kLength);
+  std::erase_if(kind, [](unsigned char c) { return std::isdigit(c); });
+  return kind;
+}
+
+void Say(const Row& row, const std::vector<Trial>& trials, double seconds) {
   std::map<std::string, int> said;
   for (const Trial& trial : trials) {
-    for (const std::string& why : trial.unreliable) ++said["unreliable: " + Without(why)];
-    for (const std::string& what : trial.warnings) ++said["warning: " + Without(what)];
+    for (const std::string& why : trial.unreliable) ++said["unreliable: " + KindOf(why)];
+    for (const std::string& what : trial.warnings) ++said["warning: " + KindOf(what)];
   }
-  for (const auto& [what, times] : said) fmt::print(stderr, "  {} x {}\n", times, what);
+  fmt::print(stderr, "{}: {} data sets in {:.0f} s\n", row.name, trials.size(), seconds);
+  for (const auto& [kind, times] : said) fmt::print(stderr, "  {} x {} ...\n", times, kind);
 }
 
-int Run(size_t sets, const std::string& only) {
+std::vector<Trial> TryWithProgress(const Row& row, size_t number, size_t sets) {
+  Progress progress(row.name);
+  std::mutex one_at_a_time;
+  double done = 0;
+  return TryAll(row, number, sets, kThreads, [&] {
+    const std::scoped_lock lock(one_at_a_time);
+    progress.Show(++done / static_cast<double>(sets));
+  });
+}
+
+bool Run(const Options& options) {
   Table table;
-  bool all = true, any = false;
-  const std::vector<Row> rows = Rows();
-  for (size_t number = 0; number < rows.size(); ++number) {
-    const Row& row = rows[number];
-    if (!only.empty() && row.name != only) continue;
-    any = true;
-    std::atomic<size_t> done = 0;
-    const std::vector<Trial> trials = TryAll(row, number, sets, kThreads, [&] {
-      if (++done % 50 == 0) fmt::print(stderr, "\r{}: {} of {}", row.name, done.load(), sets);
-    });
-    fmt::print(stderr, "\n");
-    Report(trials);
+  bool hold = true;
+  size_t number = 0;
+  for (const Row& row : Rows(options.sweep_deg)) {
+    ++number;
+    if (!options.row.empty() && row.name != options.row) continue;
+    const auto began = std::chrono::steady_clock::now();
+    const std::vector<Trial> trials = TryWithProgress(row, number, options.sets);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
+    Say(row, trials, seconds.count());
     const Tally tally = Count(trials);
     table.Add(row, tally);
-    all &= Holds(row, tally);
+    hold &= Holds(row, tally);
   }
-  CHECK(any) << "no row " << only;
   fmt::print("{}", table.Markdown());
-  return all ? 0 : 1;
+  return hold;
 }
 
 }  // namespace
@@ -56,13 +89,5 @@ int Run(size_t sets, const std::string& only) {
 int main(int argc, char** argv) {
   FLAGS_minloglevel = google::WARNING;
   google::InitGoogleLogging(argv[0]);
-  size_t sets = 1000;
-  std::string row;
-  for (int k = 1; k < argc; ++k) {
-    const std::string argument = argv[k];
-    if (argument.starts_with("--sets=")) sets = std::stoul(argument.substr(7));
-    else if (argument.starts_with("--row=")) row = argument.substr(6);
-    else LOG(FATAL) << "usage: scancal_coverage [--sets=1000] [--row=NAME]";
-  }
-  return scancal::coverage::Run(sets, row);
+  return scancal::coverage::Run(scancal::coverage::Parse(argc, argv)) ? 0 : 1;
 }

@@ -15,6 +15,8 @@ struct Row {
   double widest = std::numeric_limits<double>::infinity();  // wanted median width against the oracle
 };
 
-std::vector<Row> Rows();
+// Three placements of 100 profiles of 100 points; sweep in degrees. The table of the uncertainty specification, section
+// 4, without its robot, whose model is to come.
+std::vector<Row> Rows(double sweep_deg = 44);
 
 }  // namespace scancal::coverage
