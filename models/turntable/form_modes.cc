@@ -19,14 +19,14 @@ Legendre LegendreAt(double x) {
 
 }  // namespace
 
-FormModes FormModesAt(double u, double v) {
+FormModes FormModesAt(double u, double v, double aspect) {
   const Legendre in_u = LegendreAt(std::clamp(u, -1.0, 1.0)), in_v = LegendreAt(std::clamp(v, -1.0, 1.0));
   FormModes modes;
   size_t k = 0;
   double squares = 0;
   for (int degree = kLowest; degree <= kHighest; ++degree) {
     for (int i = 0; i <= degree; ++i) {
-      const double share = 1.0 / (degree * degree);
+      const double share = std::pow(i + aspect * (degree - i), -2);
       modes[k++] = share * in_u[i] * in_v[degree - i];
       squares += share * share;
     }

@@ -66,7 +66,7 @@ double PlateForm::At(double u, double v) const {
   v = (v - over_.centre_v) / over_.half_v;
   if (!waves_.empty()) return Waves(u, v);
   double sum = 0;
-  const FormModes modes = FormModesAt(u, v);
+  const FormModes modes = FormModesAt(u, v, over_.half_u / over_.half_v);
   for (size_t k = 0; k < modes_.size(); ++k) sum += modes_[k] * modes[k];
   return sum;
 }

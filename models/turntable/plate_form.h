@@ -6,8 +6,7 @@
 namespace scancal {
 
 enum class FormKind {
-  kModes,   // orthonormal Legendre products of total degree 2 to 4, independent normal amplitudes of variance ~
-            // degree^-4
+  kModes,   // those of form_modes.h, amplitudes independent and normal
   kSmooth,  // eight plane waves of random direction and phase, 3/4 to 2 sides of the rectangle long, its plane removed
   kBent,    // the same, 1 to 3 times as long as the longer side: mostly bent about one axis
 };

@@ -47,10 +47,12 @@ class Bounds {
     highest_ = highest_.max(at);
   }
   Eigen::Array2d Scaled(const Eigen::Array2d& at) const {  // to [-1, 1]
-    return (2 * at - lowest_ - highest_) / (highest_ - lowest_).max(kNoExtent_mm);
+    return (2 * at - lowest_ - highest_) / Sides();
   }
+  double Aspect() const { return Sides()[0] / Sides()[1]; }
 
  private:
+  Eigen::Array2d Sides() const { return (highest_ - lowest_).max(kNoExtent_mm); }
   Eigen::Array2d lowest_ = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), highest_ = -lowest_;
 };
 
@@ -88,7 +90,7 @@ void AddForm(const std::vector<Profile>& profiles, const TurntablePose& pose, co
     Turntable::View& view = (*views)[k];
     view.form = AsLine(profiles[k], view, kFormModes, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
       const Eigen::Array2d at = plate.Scaled(on_plate(profiles[k], p));
-      return Eigen::Map<const Eigen::RowVectorXd>(FormModesAt(at[0], at[1]).data(), kFormModes);
+      return Eigen::Map<const Eigen::RowVectorXd>(FormModesAt(at[0], at[1], plate.Aspect()).data(), kFormModes);
     });
   }
 }

@@ -36,9 +36,7 @@ class Scenes {
     return row;
   }
 
-  // The specification wants other smooth functions held as well. Bent plates are not: their form is nearly all in the
-  // mode of degree 2 along the longer side, which M and N feel most, and of which the declared ensemble has only a
-  // quarter.
+  // Functions that are not among the modes of the declared ensemble.
   Row OtherForm(double microns, FormKind kind) const {
     Row row = Form(microns);
     row.name += kind == FormKind::kSmooth ? ", other functions" : ", bent plates";

@@ -44,7 +44,10 @@ TEST(PlateForm, OfModesHasItsRmsOverTheEnsemble) {
   const double standard_error = std::sqrt((squares - sum * sum) / kPlates);
   EXPECT_LT(standard_error, 0.05);
   EXPECT_NEAR(sum, 1, 4 * standard_error);
-  const double expected = (1 / 16.0) / (3 / 16.0 + 4 / 81.0 + 5 / 256.0);  // variance ~ degree^-4
+  double all = 0;  // variance of degrees (i, j) ~ (i + aspect j)^-4
+  for (int degree = 2; degree <= 4; ++degree)
+    for (int j = 0; j <= degree; ++j) all += std::pow(degree - j + j * kOver.half_u / kOver.half_v, -4);
+  const double expected = std::pow(2, -4) / all;
   EXPECT_NEAR(bend, expected, 4 * expected * std::sqrt(2.0 / kPlates));
 }
 
