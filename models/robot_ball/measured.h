@@ -27,4 +27,10 @@ struct RobotData {
   double usual_ball_noise = 0;  // mm: what RobotBall::SeenBall::spread is relative to; 0: nothing was declared
 };
 
+// What a method finds.
+struct RobotSetup {
+  Eigen::Isometry3d flange_from_scanner = Eigen::Isometry3d::Identity();
+  std::vector<Link> link_errors;  // added to the nominal; one a link
+};
+
 }  // namespace scancal
