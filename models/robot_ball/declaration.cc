@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include "models/robot_ball/artifact.h"
+#include "models/robot_ball/ball_names.h"
 #include "models/robot_ball/check_lengths.h"
+#include "models/robot_ball/plausible.h"
 #include "models/robot_ball/stations.h"
 
 namespace scancal {
@@ -31,18 +34,40 @@ Files ReadFiles(YamlMap top, const std::filesystem::path& folder) {
   return files;
 }
 
+// Degrees declared as radians, and the other way round: nobody builds an axis at 1.5708 degrees.
+void CheckAngle(double angle_rad, const char* key, YamlMap* row) {
+  constexpr double kTurn_rad = 2 * std::numbers::pi, kNear = 1e-3;
+  const double number = std::abs(angle_rad) * 360 / kTurn_rad;
+  if (std::abs(angle_rad) > 2 * kTurn_rad)
+    row->Fail(key, fmt::format("expected two turns at most, that is {:.4g} rad; are these degrees? See units: angle",
+                               angle_rad));
+  if (std::abs(number - kTurn_rad / 4) < kNear || std::abs(number - kTurn_rad / 2) < kNear)
+    row->Fail(key, "expected an angle in degrees, that looks like radians; see units: angle");
+}
+
+void CheckReach(const std::vector<Link>& links, YamlMap* robot) {
+  double reach = 0;
+  for (const Link& link : links) reach += std::abs(link.d) + std::abs(link.a);
+  if (reach < kLeastReach_mm || reach > kLargestReach_mm)
+    robot->Fail("links", fmt::format("the arm is {:.3g} mm long, expected {} mm to {} mm; see units: length", reach,
+                                     kLeastReach_mm, kLargestReach_mm));
+}
+
 std::vector<Link> ReadLinks(YamlMap top, const Units& units) {
   std::vector<Link> links;
   if (!top.Has("robot")) return links;
-  for (YamlMap row : top.Map("robot").Maps("links")) {
-    const auto number = [&](const char* key, Dimension dimension, std::optional<double> otherwise = {}) {
-      return row.Number(key, otherwise) * units.Of(dimension);
+  YamlMap robot = top.Map("robot");
+  using enum Dimension;
+  for (YamlMap row : robot.Maps("links")) {
+    const auto length = [&](const char* key) { return row.Number(key) * units.Of(kLength); };
+    const auto angle = [&](const char* key, std::optional<double> otherwise = {}) {
+      const double value = row.Number(key, otherwise) * units.Of(kAngle);
+      CheckAngle(value, key, &row);
+      return value;
     };
-    using enum Dimension;
-    links.push_back({number("theta", kAngle, 0), number("d", kLength), number("a", kLength), number("alpha", kAngle),
-                     number("beta", kAngle, 0)});
+    links.push_back({angle("theta", 0), length("d"), length("a"), angle("alpha"), angle("beta", 0)});
   }
-  if (links.empty()) top.Fail("robot", "expected links: one row a joint, base to flange");
+  CheckReach(links, &robot);
   return links;
 }
 
@@ -94,6 +119,15 @@ void TakeArtifact(const Artifact& artifact, RobotDeclaration* result) {
   result->data.u_spheres = std::sqrt(squares / static_cast<double>(artifact.u.size()));
 }
 
+Result<void> CheckBalls(const RobotData& data, const Observations& observations) {
+  const std::optional<WrongBall> wrong = FindWrongBall(data);
+  if (!wrong) return {};
+  for (size_t row = 0; row < observations.seen.size(); ++row)
+    if (observations.seen[row].pose == wrong->pose && observations.seen[row].ball == wrong->ball)
+      return observations.table.Wrong(row, "ball", "found \"" + wrong->ball + "\", but " + wrong->sentence);
+  return Error{observations.table.name() + ": " + wrong->sentence};
+}
+
 Result<void> TakeStations(const Files& files, const std::filesystem::path& folder, RobotDeclaration* result) {
   RobotData& data = result->data;
   const Units& units = result->dataset.units;
@@ -109,6 +143,8 @@ Result<void> TakeStations(const Files& files, const std::filesystem::path& folde
   data.usual_ball_noise = UsualNoise(observations, declared);
   result->centres_have_u = !observations.fitted && observations.table.Has("u") && data.usual_ball_noise > 0;
   data.stations = SeenStations(poses, &result->warnings);
+  SCANCAL_RETURN_IF_ERROR(CheckPlausible(data, poses.table.name(), &result->warnings));
+  SCANCAL_RETURN_IF_ERROR(CheckBalls(data, observations));
   result->files.insert(result->files.end(), observations.files.begin(), observations.files.end());
   Append(observations.warnings, &result->warnings);
   return {};
