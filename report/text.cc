@@ -133,6 +133,12 @@ bool HasDeclared(const Calibration& c) {
   return std::any_of(c.budget.begin(), c.budget.end(), [](const BudgetLine& line) { return line.type == 'B'; });
 }
 
+std::string CellText(const ComparisonCell& cell, int digits) {
+  if (!cell.value) return "-";
+  if (cell.u > 0) return Concise(*cell.value, cell.u);
+  return digits == 0 ? Count(*cell.value) : Significant(*cell.value, digits);
+}
+
 }  // namespace
 
 std::string ToText(const Calibration& c) {
@@ -171,35 +177,14 @@ std::string ToText(const Calibration& c) {
 
 std::string ToText(const Comparison& comparison) {
   std::vector<std::string> header = {"method"};
-  for (size_t k = 0; k < comparison.parameters.size(); ++k)
-    header.push_back(comparison.parameters[k] + (comparison.is_angle[k] ? "/mrad" : "/mm"));
-  for (const char* column : {"S/um", "plane rms/um", "held out/um", "u(M)/um", "u(N)/um", "step/√12/um", "ΔM/u", "ΔN/u",
-                             "nodes, iter.", "s"})
-    header.push_back(column);
+  for (const ComparisonColumn& column : comparison.columns) header.push_back(column.name);
   TextTable table(header);
   std::string notes;
-  const ComparisonRow& reference = comparison.rows.back();
-  const auto um = [](double mm) { return Significant(mm * 1000, 3); };
   for (const ComparisonRow& row : comparison.rows) {
-    std::vector<std::string> cells = {row.method};
     if (!row.note.empty()) notes += row.method + ": " + row.note + "\n";
-    if (row.values.empty()) {  // left out, as the note says
-      cells.resize(header.size(), "-");
-      table.Add(cells);
-      continue;
-    }
-    for (size_t k = 0; k < row.values.size(); ++k)
-      cells.push_back(comparison.is_angle[k] ? Significant(row.values[k] * 1000, 3)
-                                             : Concise(row.values[k], row.u[k].value_or(0)));
-    cells.push_back(um(row.S));
-    cells.push_back(um(row.rms));
-    cells.push_back(row.held_out_rms ? um(*row.held_out_rms) : "-");
-    for (const size_t k : {0, 1}) cells.push_back(row.u[k] ? um(*row.u[k]) : "-");
-    cells.push_back(row.quantisation ? um(*row.quantisation) : "-");
-    for (const size_t k : {0, 1})
-      cells.push_back(reference.u[k] ? Significant((row.values[k] - reference.values[k]) / *reference.u[k], 3) : "-");
-    cells.push_back(Count(row.effort));
-    cells.push_back(Significant(row.seconds, 2));
+    std::vector<std::string> cells = {row.method};
+    for (size_t k = 0; k < row.cells.size(); ++k) cells.push_back(CellText(row.cells[k], comparison.columns[k].digits));
+    cells.resize(header.size(), "-");
     table.Add(cells);
   }
   return table.Text() + notes;
