@@ -32,7 +32,8 @@ class FlangeBall {
   struct Target {
     std::string name;
     std::vector<View> views;
-    Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  // from socket 0 to socket 1, base: where direction_1, _2 start
+    Eigen::Vector3d direction =
+        Eigen::Vector3d::UnitX();  // from socket 0 to socket 1, base: where direction_1, _2 start
     Eigen::Vector3d across[2] = {Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};  // their axes
   };
 
