@@ -1,23 +1,11 @@
 #include "models/robot_ball/robot_fit.h"
-#include <Eigen/SVD>
-#include <algorithm>
 #include <memory>
+#include "models/robot_ball/hand_eye.h"
 
 namespace scancal {
 namespace {
 
 constexpr double kLeastSigma_mm = 1e-9;  // noiseless data need a scale too
-
-std::vector<Link> Moved(std::vector<Link> links, const std::vector<Link>& errors) {
-  for (size_t k = 0; k < errors.size() && k < links.size(); ++k) {
-    links[k].theta += errors[k].theta;
-    links[k].d += errors[k].d;
-    links[k].a += errors[k].a;
-    links[k].alpha += errors[k].alpha;
-    links[k].beta += errors[k].beta;
-  }
-  return links;
-}
 
 // One value per system quantity.
 std::vector<double> SystemValues(const Quantities& quantities, const RobotSetup& setup) {
@@ -39,30 +27,9 @@ Error NotDetermined(const Observability& observability) {
 
 }  // namespace
 
-std::vector<Station> StationsAt(const RobotData& data, const RobotSetup& setup) {
-  const std::vector<Link> links = Moved(data.links, setup.link_errors);
-  std::vector<Station> stations = data.stations;
-  for (Station& station : stations) {
-    std::vector<Eigen::Vector3d> on_artifact, in_base;
-    for (const RobotBall::View& pose : station.views) {
-      const Eigen::Isometry3d base_from_scanner =
-          pose.base_from_flange * BaseFromFlange(links, pose.joints) * setup.flange_from_scanner;
-      for (const RobotBall::SeenBall& ball : pose.balls) {
-        on_artifact.push_back(data.spheres[ball.sphere].centre);
-        in_base.push_back(base_from_scanner * ball.centre);
-      }
-    }
-    const auto points = [](const std::vector<Eigen::Vector3d>& all) {
-      return Eigen::Matrix3Xd::Map(all.front().data(), 3, std::ssize(all));
-    };
-    station.base_from_artifact = Eigen::umeyama(points(on_artifact), points(in_base), false);
-  }
-  return stations;
-}
-
 Result<RobotFit> FitRobot(const RobotData& data, const RobotBall& model, const RobotSetup& start, int max_iterations) {
   RobotFit fit;
-  fit.stations = StationsAt(data, start);
+  SCANCAL_ASSIGN_OR_RETURN(fit.stations, StationsAt(data, start));
   Problem problem = MakeProblem<RobotBall>(std::make_shared<const RobotBall>(model), fit.stations);
   problem.WeighEqually(data.usual_ball_noise > 0 ? data.usual_ball_noise : 1);
   Estimate from = NominalStart(problem);

@@ -16,14 +16,10 @@ struct RobotFit {
 // Generalised least squares of all balls of all poses at once: rows are whitened per pose with V = blockdiag(balls) +
 // sigma_r^2 1 1' (x) I3, because repeatability is common to all balls of a pose. sigma_r and the noise of the balls are
 // as declared, or restricted maximum likelihood. model: carries roles and priors. start: of the hand-eye and of the
-// links that are estimated; every station starts where its balls then lie.
+// links that are estimated; every station starts where its balls then lie (StationsAt).
 //
 // An Error names what the data do not determine.
 Result<RobotFit> FitRobot(const RobotData& data, const RobotBall& model, const RobotSetup& start,
                           int max_iterations = 100);
-
-// Stations with base_from_artifact set: the rigid motion that brings the artifact to its balls as this setup sees them
-// in the base (Kabsch; all poses of the station at once).
-std::vector<Station> StationsAt(const RobotData& data, const RobotSetup& setup);
 
 }  // namespace scancal
