@@ -18,22 +18,6 @@ using Eigen::VectorXd;
 
 constexpr double kNormal95 = 1.959964;
 
-RobotBall Model(const RobotData& data, const RobotScene& scene, Noise noise) {
-  RobotBall model(data.links, data.spheres);
-  for (int k = 0; k < std::ssize(model.quantities()); ++k) {
-    Quantity& quantity = model.quantity(k);
-    const auto consider = [&](double u) {
-      quantity.role = Role::kConsider;
-      quantity.u = u;
-    };
-    if (quantity.source == "artifact" && scene.u_spheres > 0) consider(scene.u_spheres);
-    if (noise == Noise::kEstimated) continue;
-    if (quantity.source == "ball") consider(scene.ball_noise);
-    if (quantity.source == "repeatability") consider(scene.repeatability);
-  }
-  return model;
-}
-
 // The estimated quantities of the system at this setup.
 VectorXd Estimated(const Quantities& quantities, const RobotSetup& setup) {
   std::vector<double> values(quantities.size());
@@ -81,7 +65,7 @@ struct Try {
 
 Try Refined(const RobotScene& scene, Noise noise, const Truth& truth) {
   const SimulatedRobot robot = SimulateRobot(scene);
-  const RobotBall model = Model(robot.data, scene, noise);
+  const RobotBall model = DeclaredModel(robot.data, scene, noise);
   const Result<RobotFit> fit = FitRobot(robot.data, model, robot.truth);
   if (!fit.ok() || !fit->solution.fit.converged) return {};
   const Headline headline = HeadlineOf(fit->solution, ClusteredCovariance(fit->solution.problem, fit->solution.linear));
@@ -98,7 +82,7 @@ Try Refined(const RobotScene& scene, Noise noise, const Truth& truth) {
 Efficiency StudyEfficiency(const RobotScene& scene, Noise noise, size_t runs, int threads) {
   const SimulatedRobot robot = SimulateRobot(scene);
   const Truth truth = TruthOf(robot);
-  const RobotBall exactly_known = Model(robot.data, scene, Noise::kDeclared);
+  const RobotBall exactly_known = DeclaredModel(robot.data, scene);
   Efficiency efficiency;
   for (const Quantity& quantity : exactly_known.quantities())
     if (quantity.scope == Scope::kSystem && quantity.role == Role::kEstimate) efficiency.names.push_back(quantity.name);

@@ -3,11 +3,9 @@
 #include <Eigen/Core>
 #include <string>
 #include <vector>
-#include "models/robot_ball/simulate.h"
+#include "tests/robot_study/declared.h"
 
 namespace scancal::robot_study {
-
-enum class Noise { kDeclared, kEstimated };  // what the refinement is told of ball and repeatability
 
 struct Efficiency {  // one entry an estimated parameter of the system
   std::vector<std::string> names;
