@@ -21,7 +21,7 @@ constexpr double kNormal95 = 1.959964;
 // The estimated quantities of the system at this setup.
 VectorXd Estimated(const Quantities& quantities, const RobotSetup& setup) {
   std::vector<double> values(quantities.size());
-  Eigen::Map<Eigen::Matrix<double, 6, 1>>(&values[RobotBall::kHandEye]) = NumbersOf(setup.flange_from_scanner);
+  VectorXd::Map(&values[RobotBall::kHandEye], 6) = NumbersOf(setup.flange_from_scanner);
   double* number = &values[RobotBall::kLinks];
   for (const Link& error : setup.link_errors)
     for (const double x : {error.theta, error.d, error.a, error.alpha, error.beta}) *number++ = x;
