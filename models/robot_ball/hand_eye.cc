@@ -4,6 +4,8 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 namespace scancal {
 namespace {
@@ -153,6 +155,10 @@ Result<RobotSetup> InitialHandEye(const RobotData& data) {
   setup.flange_from_scanner.translation() = translation;
   setup.link_errors.resize(data.links.size());
   return setup;
+}
+
+Result<Vector3d> HandEyeTranslation(const RobotData& data, const Matrix3d& rotation) {
+  return Translation(data.stations, AllRows(data), rotation);
 }
 
 Result<std::vector<Station>> StationsAt(const RobotData& data, const RobotSetup& setup) {

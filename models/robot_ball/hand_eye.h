@@ -25,6 +25,9 @@ Eigen::Isometry3d BaseFromScanner(const RobotData& data, const RobotSetup& setup
 // Not a least-squares estimate: R and N are rotations only afterwards. That costs little and needs no start.
 Result<RobotSetup> InitialHandEye(const RobotData& data);
 
+// Only the translation, eq. (6), the rotation being known. Errors: poses that do not turn, or turn about one axis.
+Result<Eigen::Vector3d> HandEyeTranslation(const RobotData& data, const Eigen::Matrix3d& rotation);
+
 // The stations with base_from_artifact set: all balls of a station, carried into the base, fitted by the artifact
 // (Umeyama 1991). Error: a station where the seen balls lie on a line.
 Result<std::vector<Station>> StationsAt(const RobotData& data, const RobotSetup& setup);
