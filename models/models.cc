@@ -1,10 +1,11 @@
 #include "models/models.h"
+#include "models/robot_ball/robot_scanner.h"
 #include "models/turntable/turntable_scanner.h"
 
 namespace scancal {
 namespace {
 
-constexpr ScannerKind kKinds[] = {kTurntable};
+constexpr ScannerKind kKinds[] = {kTurntable, kRobotBall};
 
 }  // namespace
 
