@@ -33,7 +33,9 @@ inline std::vector<RobotBall::Sphere> EightSpheres() {
           {"E", {80, -45, -10}}, {"F", {210, 55, 25}},  {"G", {360, -60, -20}},  {"H", {506, 10, 5}}};
 }
 
-struct RobotScene {
+namespace in_memory {
+
+struct RobotScene {  // not that of models/robot_ball/simulate.h
   std::vector<Link> links = SixAxisArm();
   std::vector<Link> errors = std::vector<Link>(6);
   Eigen::Isometry3d flange_from_scanner = PoseOf({1.3, 0.6, 264.8, 0.01, 0.02, 1.55});
@@ -43,6 +45,10 @@ struct RobotScene {
   double noise = 0, repeatability = 0;  // mm, per axis
   uint64_t seed = 1;
 };
+
+}  // namespace in_memory
+
+using in_memory::RobotScene;
 
 inline RobotSetup Truth(const RobotScene& scene) { return {scene.flange_from_scanner, scene.errors}; }
 
