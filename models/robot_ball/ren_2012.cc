@@ -1,6 +1,7 @@
 #include "models/robot_ball/ren_2012.h"
 #include <vector>
 #include "models/robot_ball/distance_identification.h"
+#include "models/robot_ball/hand_eye.h"
 #include "models/robot_ball/virtual_point.h"
 
 namespace scancal {
@@ -28,8 +29,10 @@ Station MostSeenSphere(const RobotData& data) {
 Result<RobotSetup> Ren2012(const RobotData& data) {
   RobotData one = data;
   one.stations = {MostSeenSphere(data)};
-  SCANCAL_ASSIGN_OR_RETURN(const RobotSetup first, VirtualPointHandEye(one));
-  return IdentifyByDistances(one, first, Identified::kHandEye);
+  Result<RobotSetup> first = VirtualPointHandEye(one);
+  if (!first.ok()) first = InitialHandEye(data);
+  if (!first.ok()) return first;
+  return IdentifyByDistances(one, *first, Identified::kHandEye);
 }
 
 }  // namespace scancal

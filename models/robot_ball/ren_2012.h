@@ -6,9 +6,10 @@
 namespace scancal {
 
 // The hand-eye from a single sphere, links nominal: of the sphere that one station sees most often, the centre stands
-// still in the base. First from eqs. (6)-(7), then the least squares of its scatter. The artifact is not needed.
+// still in the base. First from eqs. (6)-(7), or from all balls (InitialHandEye) where the one sphere is too little to
+// start from; then the least squares of its scatter, which does not know the artifact.
 //
-// Error: no sphere is seen often enough, or the poses that see it do not move enough.
+// Error: no sphere is seen twice, or the poses do not move enough for a start.
 Result<RobotSetup> Ren2012(const RobotData& data);
 
 }  // namespace scancal

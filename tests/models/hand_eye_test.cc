@@ -2,6 +2,7 @@
 #include "models/robot_ball/hand_eye.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include "models/robot_ball/virtual_point.h"
 #include "tests/models/robot_scene.h"
 
 namespace scancal {
@@ -34,22 +35,6 @@ RobotData WithoutLinks(RobotData data) {
       view.joints.clear();
     }
   data.links.clear();
-  return data;
-}
-
-// One station seen from these poses of the flange.
-RobotData SeenFrom(const std::vector<Eigen::Isometry3d>& flanges, const RobotScene& scene) {
-  RobotData data;
-  data.spheres = EightSpheres();
-  data.stations.push_back({.name = "bench", .views = {}});
-  const Eigen::Isometry3d base_from_artifact = PoseOf({700, 50, 100, 0.3, -0.2, 2.0});
-  for (const Eigen::Isometry3d& flange : flanges) {
-    RobotBall::View& view = data.stations[0].views.emplace_back();
-    view.base_from_flange = flange;
-    for (int b = 0; b < scene.balls; ++b)
-      view.balls.push_back(
-          {b, (flange * scene.flange_from_scanner).inverse() * (base_from_artifact * data.spheres[b].centre)});
-  }
   return data;
 }
 
@@ -149,6 +134,74 @@ TEST(StationsAt, SaysWhichStationSeesALineOnly) {
   const auto stations = StationsAt(Simulate(scene), Truth(scene));
   ASSERT_FALSE(stations.ok());
   EXPECT_THAT(stations.error().message, AllOf(HasSubstr("station S1"), HasSubstr("line")));
+}
+
+// Six moves of one orientation and six turns, as published.
+std::vector<Eigen::Isometry3d> MovesAndTurns() {
+  std::vector<Eigen::Isometry3d> flanges;
+  for (const Eigen::Vector3d& at :
+       {Eigen::Vector3d(0, 0, 0), {80, 0, 0}, {0, 90, 0}, {0, 0, 70}, {-50, 0, 0}, {0, -60, 0}})
+    flanges.push_back(PoseOf({at[0], at[1], at[2], 0.3, 2.8, 0.1}));
+  for (const Eigen::Vector3d& turn :
+       {Eigen::Vector3d(0.3, 0, 0), {0, 0.3, 0}, {0, 0, 0.4}, {-0.3, 0.1, 0}, {0.1, -0.3, 0}, {0, 0.2, -0.3}})
+    flanges.push_back(flanges[0] * PoseOf({50 * turn[1], 70 * turn[0], 30, turn[0], turn[1], turn[2]}));
+  return flanges;
+}
+
+TEST(VirtualPointHandEye, RecoversTheTruthFromMovesAndTurns) {
+  const RobotScene scene;
+  const auto setup = VirtualPointHandEye(SeenFrom(MovesAndTurns(), scene));
+  ASSERT_TRUE(setup.ok()) << setup.error().message;
+  EXPECT_TRUE(setup->flange_from_scanner.isApprox(scene.flange_from_scanner, 1e-12));
+}
+
+TEST(VirtualPointHandEye, TheRotationIsOfTheMovesAndTheTranslationOfTheTurns) {
+  const RobotScene scene;
+  RobotData data = SeenFrom(MovesAndTurns(), scene);
+  for (size_t k = 6; k < 12; ++k) data.stations[0].views[k].balls[0].centre.x() += 1 + static_cast<double>(k * k % 5);
+  const auto setup = VirtualPointHandEye(data);
+  ASSERT_TRUE(setup.ok()) << setup.error().message;
+  EXPECT_LT(Turn(setup->flange_from_scanner, scene.flange_from_scanner), 1e-12);
+  EXPECT_GT((setup->flange_from_scanner.translation() - scene.flange_from_scanner.translation()).norm(), 0.1);
+}
+
+TEST(VirtualPointHandEye, MovesInAPlaneSufficeMovesOnALineDoNot) {
+  const RobotScene scene;
+  std::vector<Eigen::Isometry3d> flanges = MovesAndTurns();
+  flanges.erase(flanges.begin() + 3);  // the only one along z
+  RobotData data = SeenFrom(flanges, scene);
+  for (size_t k = 5; k < 11; ++k) data.stations[0].views[k].balls[0].centre.x() += 1 + static_cast<double>(k * k % 5);
+  auto setup = VirtualPointHandEye(data);
+  ASSERT_TRUE(setup.ok()) << setup.error().message;
+  EXPECT_LT(Turn(setup->flange_from_scanner, scene.flange_from_scanner), 1e-12);  // of moves alone
+  flanges.erase(flanges.begin() + 4);
+  flanges.erase(flanges.begin() + 2);  // those along y
+  setup = VirtualPointHandEye(SeenFrom(flanges, scene));
+  ASSERT_TRUE(setup.ok()) << setup.error().message;
+  EXPECT_TRUE(setup->flange_from_scanner.isApprox(scene.flange_from_scanner, 1e-10));  // in closed form, of all
+}
+
+TEST(VirtualPoints, AreOfTheSameBallsInAllPoses) {
+  RobotScene scene;
+  scene.balls = 7;
+  scene.poses = 3;  // each misses another ball
+  const RobotData data = Simulate(scene), points = VirtualPoints(data);
+  for (const Station& station : points.stations) {
+    ASSERT_EQ(station.views.size(), 3u);
+    std::vector<Eigen::Vector3d> in_base;
+    for (const RobotBall::View& view : station.views)
+      in_base.push_back(BaseFromScanner(points, Truth(scene), view) * view.balls[0].centre);
+    EXPECT_LT((in_base[0] - in_base[1]).norm() + (in_base[0] - in_base[2]).norm(), 1e-9);
+  }
+}
+
+TEST(VirtualPoints, PosesWithoutACommonBallGo) {
+  RobotScene scene;
+  scene.stations = 1;
+  scene.balls = 4;  // the poses see ABCD, DEFG, GHAB, BCDE, EFGH
+  scene.poses = 5;
+  const RobotData points = VirtualPoints(Simulate(scene));
+  EXPECT_EQ(points.stations[0].views.size(), 3u);  // B is the first to be seen three times
 }
 
 }  // namespace

@@ -52,8 +52,6 @@ using in_memory::RobotScene;
 
 inline RobotSetup Truth(const RobotScene& scene) { return {scene.flange_from_scanner, scene.errors}; }
 
-namespace internal {
-
 inline std::vector<double> Near(const std::vector<double>& joints, double spread, Random& random) {
   std::vector<double> result = joints;
   for (double& q : result) q += spread * random.Normal();
@@ -65,18 +63,21 @@ inline Eigen::Vector3d NormalVector(double sigma, Random& random) {
   return sigma * Eigen::Vector3d(x, y, z);
 }
 
-}  // namespace internal
+// A point of the base as the scanner sees it at the joints of the view.
+inline Eigen::Vector3d SeenPoint(const RobotData& data, const RobotScene& scene, const RobotBall::View& view,
+                                 const Eigen::Vector3d& p_in_base, Random& random) {
+  return BaseFromScanner(data, Truth(scene), view).inverse() * p_in_base + NormalVector(scene.noise, random);
+}
 
 // What the scanner sees of the artifact at the joints: `balls` of them from the first on, cyclic.
 inline RobotBall::View See(const RobotData& data, const RobotScene& scene, const Eigen::Isometry3d& base_from_artifact,
                            std::vector<double> joints, int first, Random& random) {
   RobotBall::View view{.name = "", .joints = std::move(joints)};
-  const Eigen::Isometry3d scanner = BaseFromScanner(data, Truth(scene), view);
-  const Eigen::Vector3d moved = internal::NormalVector(scene.repeatability, random);
+  const Eigen::Vector3d moved = NormalVector(scene.repeatability, random);
   for (int b = 0; b < scene.balls; ++b) {
     const int sphere = (first + b) % static_cast<int>(data.spheres.size());
     const Eigen::Vector3d in_base = base_from_artifact * data.spheres[sphere].centre - moved;
-    view.balls.push_back({sphere, scanner.inverse() * in_base + internal::NormalVector(scene.noise, random)});
+    view.balls.push_back({sphere, SeenPoint(data, scene, view, in_base, random)});
   }
   return view;
 }
@@ -89,16 +90,51 @@ inline RobotData Simulate(const RobotScene& scene) {
   for (int s = 0; s < scene.stations; ++s) {
     Station& station = data.stations.emplace_back();
     station.name = "S" + std::to_string(s + 1);
-    const std::vector<double> home = internal::Near({0, -1.2, 1.4, 0.2, 0.9, 0}, 0.4, random);
+    const std::vector<double> home = Near({0, -1.2, 1.4, 0.2, 0.9, 0}, 0.4, random);
     RobotBall::View start{.name = "", .joints = home};
     const Eigen::Isometry3d ahead =
-        Eigen::Translation3d(internal::NormalVector(60, random) + Eigen::Vector3d(0, 0, 250)) *
-        PoseOf(
-            (Eigen::Matrix<double, 6, 1>() << Eigen::Vector3d::Zero(), internal::NormalVector(0.6, random)).finished());
+        Eigen::Translation3d(NormalVector(60, random) + Eigen::Vector3d(0, 0, 250)) *
+        PoseOf((Eigen::Matrix<double, 6, 1>() << Eigen::Vector3d::Zero(), NormalVector(0.6, random)).finished());
     const Eigen::Isometry3d base_from_artifact = BaseFromScanner(data, Truth(scene), start) * ahead;
     for (int j = 0; j < scene.poses; ++j)
       station.views.push_back(
-          See(data, scene, base_from_artifact, internal::Near(home, scene.spread, random), 3 * j + s, random));
+          See(data, scene, base_from_artifact, Near(home, scene.spread, random), 3 * j + s, random));
+  }
+  return data;
+}
+
+// Ten positions of a scale, its two balls seen from a pose each.
+inline void AddCheck(const RobotScene& scene, RobotData* data) {
+  Random random(scene.seed, 1);
+  for (int k = 0; k < 10; ++k) {
+    const std::vector<double> home = Near({0, -1.2, 1.4, 0.2, 0.9, 0}, 0.4, random);
+    CheckLength check{"position " + std::to_string(k + 1), {}, {}, 299.546, 0.001};
+    Eigen::Vector3d p_in_base =
+        BaseFromScanner(*data, Truth(scene), {.name = "", .joints = home}) * Eigen::Vector3d(0, 0, 250);
+    for (RobotBall::View* view : {&check.first_pose, &check.second_pose}) {
+      view->joints = Near(home, scene.spread, random);
+      const Eigen::Vector3d moved = NormalVector(scene.repeatability, random);
+      view->balls.push_back({0, SeenPoint(*data, scene, *view, p_in_base - moved, random)});
+      p_in_base += check.distance * NormalVector(1, random).normalized();
+    }
+    data->check.push_back(std::move(check));
+  }
+}
+
+// One station seen from these poses of the flange, as a controller gives them.
+inline RobotData SeenFrom(const std::vector<Eigen::Isometry3d>& flanges, const RobotScene& scene) {
+  RobotData data;
+  data.spheres = EightSpheres();
+  data.stations.push_back({.name = "bench", .views = {}});
+  Random random(scene.seed, 0);
+  for (const Eigen::Isometry3d& flange : flanges) {
+    RobotBall::View& view = data.stations[0].views.emplace_back();
+    view.base_from_flange = flange;
+    for (int b = 0; b < scene.balls; ++b) {
+      const Eigen::Vector3d p_in_base = PoseOf({700, 50, 100, 0.3, -0.2, 2.0}) * data.spheres[b].centre;
+      view.balls.push_back(
+          {b, (flange * scene.flange_from_scanner).inverse() * p_in_base + NormalVector(scene.noise, random)});
+    }
   }
   return data;
 }
