@@ -4,7 +4,7 @@
 #include <numbers>
 #include "io/json_file.h"
 #include "io/output_file.h"
-#include "models/robot_ball.h"
+#include "models/robot_ball/gauge.h"
 
 namespace scancal {
 namespace {
@@ -101,19 +101,21 @@ Json Matrix(const Eigen::Isometry3d& pose) {
   return rows;
 }
 
-Json Truth(const RobotScene& scene, const SimulatedRobot& robot) {
-  Json truth;
-  truth["units"] = "mm, rad";
-  truth["hand_eye"] = Matrix(robot.truth.flange_from_scanner);
-  truth["link_errors"] = Json::object();
+Json SetupJson(const RobotSetup& setup) {
+  Json json = {{"hand_eye", Matrix(setup.flange_from_scanner)}, {"link_errors", Json::object()}};
   Quantities names;
-  DeclareLinks(robot.truth.link_errors.size(), &names);
-  for (size_t k = 0; k < robot.truth.link_errors.size(); ++k) {
-    const Link& error = robot.truth.link_errors[k];
-    size_t name = kLinkNumbers * k;
+  DeclareLinks(setup.link_errors.size(), &names);
+  auto name = names.begin();
+  for (const Link& error : setup.link_errors)
     for (const double x : {error.theta, error.d, error.a, error.alpha, error.beta})
-      truth["link_errors"][names[name++].name] = x;
-  }
+      json["link_errors"][(name++)->name] = x;
+  return json;
+}
+
+Json Truth(const RobotScene& scene, const SimulatedRobot& robot) {
+  Json truth = {{"units", "mm, rad"}};
+  truth.update(SetupJson(robot.truth));
+  truth["as_default_roles_find_it"] = SetupJson(InDefaultGauge(robot.data.links, robot.truth).setup);
   truth["repeatability"] = scene.repeatability;
   truth["ball"] = scene.ball_noise;
   truth["artifact"] = scene.u_spheres;

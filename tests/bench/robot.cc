@@ -161,10 +161,10 @@ void CompareWithScipy(const std::filesystem::path& script, const std::filesystem
   for (Eigen::Index k = 0; k < u.size(); ++k)
     apart = std::max(apart, std::abs(fit.estimate.system[k] - scipy["x"][k].get<double>()) / u[k]);
   table->AddAtMost("... same hand-eye and links (in u; as scipy left it)", "", "", fmt::format("{:.1e}", apart), apart,
-                   1e-3);
+                   1e-2);
   const double cost = std::abs(fit.cost / other_cost - 1);
   table->AddAtMost("... same sum of squares (relative)", fmt::format("{:.6f}", fit.cost),
-                   fmt::format("{:.6f}", other_cost), fmt::format("{:.1e}", cost), cost, 1e-9);
+                   fmt::format("{:.6f}", other_cost), fmt::format("{:.1e}", cost), cost, 1e-8);
   table->Note(
       fmt::format("Robot: scipy {} ({}), {} calls of the residuals besides those of its Jacobian, which is numerical.",
                   scipy["version"].get<std::string>(), scipy["method"].get<std::string>(), scipy["calls"].get<int>()));
@@ -214,10 +214,8 @@ void ComparePoses(const std::string& what, const std::vector<RobotScene>& scenes
 void CompareRobot(const std::filesystem::path& scipy_script, const std::filesystem::path& folder, Table* table) {
   CompareWithScipy(scipy_script, folder, table);
   std::vector<RobotScene> more_stations, more_poses;
-  for (const int times : {1, 10, 100, 1000}) {
-    more_stations.push_back(Scene(12 * times + times / 2, 8));
-    more_poses.push_back(Scene(8, 12 * times + times / 2));
-  }
+  for (const int count : {125, 1250, 12'500}) more_stations.push_back(Scene(count, 8));
+  for (const int count : {125, 1250}) more_poses.push_back(Scene(8, count));
   ComparePoses("stations", more_stations, table);
   ComparePoses("poses of a station", more_poses, table);
   table->Note("Robot, whole fit: start in closed form, equal weights, declared noise per pose, observability.");

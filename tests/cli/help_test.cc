@@ -66,7 +66,8 @@ TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
               UnorderedElementsAre("out", "M", "N", "tilt_x", "tilt_y", "placements", "profiles", "points", "sweep",
                                    "line_length", "noise", "line_correlation", "encoder_jitter", "form", "form_kind",
                                    "one_plate", "outliers", "background", "declare", "missing", "search_width_M",
-                                   "search_width_N", "seed", "format"));
+                                   "search_width_N", "seed", "format", "model", "stations", "poses", "translations",
+                                   "configuration", "ball_noise", "repeatability", "u_artifact", "check_positions"));
 }
 
 TEST(HelpTest, FlagsHaveUnitsAndDefaults) {
