@@ -83,6 +83,8 @@ class LineProfilerTest : public ::testing::Test {
   Eigen::Isometry3d authors_ = Eigen::Isometry3d::Identity();
 };
 
+SphereChoice SeenFrom(double y) { return {KnownRadius{kRadius, 0}, Eigen::Vector3d(0, y, 0)}; }
+
 double Rms(const Points& points) {  // from their mean
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& p : points) mean += p / static_cast<double>(points.size());
@@ -94,16 +96,15 @@ double Rms(const Points& points) {  // from their mean
 TEST_F(LineProfilerTest, ALineFitsASphereOfKnownRadiusOnTheSideThatIsGiven) {
   Points centres, on_the_other_side;
   for (const Line& line : lines_) {
-    SphereChoice choice{KnownRadius{kRadius, 0}, Eigen::Vector3d(0, 1000, 0)};  // the centre lies towards -Y
-    const RobustSphere sphere = FitRobustSphere(line.points, choice);
+    const RobustSphere sphere = FitRobustSphere(line.points, SeenFrom(1000));  // the centre lies towards -Y
     EXPECT_EQ(sphere.fit.doubt, "");
     EXPECT_GT(sphere.fit.sigma, 0.004);
     EXPECT_LT(sphere.fit.sigma, 0.014);
     EXPECT_LT(sphere.set_aside, 0.04 * static_cast<double>(line.points.size()));
     EXPECT_LT(sphere.fit.centre.y(), -5);
     centres.push_back(line.base_from_flange * authors_ * sphere.fit.centre);
-    choice.outside = -*choice.outside;
-    on_the_other_side.push_back(line.base_from_flange * authors_ * FitRobustSphere(line.points, choice).fit.centre);
+    on_the_other_side.push_back(line.base_from_flange * authors_ *
+                                FitRobustSphere(line.points, SeenFrom(-1000)).fit.centre);
   }
   EXPECT_NEAR(Rms(centres), 0.38, 0.01);  // as found with other software
   EXPECT_GT(Rms(on_the_other_side), 10);
