@@ -150,19 +150,33 @@ Result<void> TakeStations(const Files& files, const std::filesystem::path& folde
   return {};
 }
 
+// All that dataset.yaml says itself.
+Result<Files> TakeYaml(const Dataset& dataset, RobotDeclaration* result) {
+  result->dataset = dataset;
+  const Files files = ReadFiles(dataset.yaml, dataset.file.parent_path());
+  result->data.links = ReadLinks(dataset.yaml, dataset.units);
+  result->data.ball_diameter = DiameterOf(dataset.yaml, dataset.units);
+  result->links = ReadLinkSetting(dataset);
+  SCANCAL_RETURN_IF_ERROR(dataset.yaml.Finish());
+  return files;
+}
+
 }  // namespace
+
+Result<RobotDeclaration> RedeclareRobot(const Dataset& dataset, RobotDeclaration read) {
+  const size_t joints = read.data.links.size();
+  SCANCAL_RETURN_IF_ERROR(TakeYaml(dataset, &read));
+  if (read.data.links.size() != joints)
+    return Error{dataset.yaml.Where("robot") + ": expected the links that the data were read with"};
+  read.files = {dataset.file};
+  return read;
+}
 
 Result<RobotDeclaration> DeclareRobot(const Dataset& dataset) {
   RobotDeclaration result;
-  result.dataset = dataset;
-  const YamlMap& top = dataset.yaml;
+  SCANCAL_ASSIGN_OR_RETURN(const Files files, TakeYaml(dataset, &result));
   const std::filesystem::path folder = dataset.file.parent_path();
-  const Files files = ReadFiles(top, folder);
   RobotData& data = result.data;
-  data.links = ReadLinks(top, dataset.units);
-  data.ball_diameter = DiameterOf(top, dataset.units);
-  result.links = ReadLinkSetting(dataset);
-  SCANCAL_RETURN_IF_ERROR(top.Finish());
   result.files = {dataset.file, files.poses, files.observations, files.artifact};
   SCANCAL_RETURN_IF_ERROR(TakeStations(files, folder, &result));
   if (files.check) {

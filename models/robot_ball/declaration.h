@@ -31,6 +31,10 @@ struct RobotDeclaration {
 // and poses in the result.
 Result<RobotDeclaration> DeclareRobot(const Dataset& dataset);
 
+// The same from tables that were read before, as calibration.json keeps them: `read` holds data, u_of_spheres,
+// centres_have_u and warnings.
+Result<RobotDeclaration> RedeclareRobot(const Dataset& dataset, RobotDeclaration read);
+
 // The model of those links and spheres, with roles, values, priors and influences as declared.
 Result<RobotBall> DeclareModel(const RobotDeclaration& declaration);
 

@@ -1,5 +1,6 @@
 // The published search and the joint refinements on the same data, and the published figure of S.
 #include <fmt/format.h>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include "io/output_file.h"
@@ -21,7 +22,59 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+constexpr size_t kParameters = 4;
 std::vector<double> Values(const TurntablePose& pose) { return {pose.M, pose.N, pose.tilt_x, pose.tilt_y}; }
+
+struct MethodResult {
+  std::string method, note;
+  std::vector<double> values;           // mm, rad; empty: left out
+  std::array<double, kParameters> u{};  // 0: none
+  std::optional<double> quantisation;   // of a grid: step / sqrt(12), mm
+  double S = 0;                         // the search's objective, mm
+  double rms = 0;                       // of the distance that all methods make small, mm
+  std::optional<double> held_out_rms;   // of each placement with the values found without it, pooled, mm
+  double effort = 0;                    // nodes of a grid, iterations of a refinement
+  double seconds = 0;
+};
+
+// The last one is the reference.
+Comparison Tabulate(const std::vector<MethodResult>& results) {
+  Comparison table{{{"M/mm", 6},
+                    {"N/mm", 6},
+                    {"tilt_x/mrad"},
+                    {"tilt_y/mrad"},
+                    {"S/um"},
+                    {"plane rms/um"},
+                    {"held out/um"},
+                    {"u(M)/um"},
+                    {"u(N)/um"},
+                    {"step/√12/um"},
+                    {"ΔM/u"},
+                    {"ΔN/u"},
+                    {"nodes, iter.", 0},
+                    {"s", 2}},
+                   {}};
+  const MethodResult& reference = results.back();
+  const auto um = [](std::optional<double> mm) { return ComparisonCell{mm ? std::optional(*mm * 1000) : mm}; };
+  const auto positive = [](double u) { return u > 0 ? std::optional(u) : std::nullopt; };
+  for (const MethodResult& result : results) {
+    ComparisonRow& row = table.rows.emplace_back(ComparisonRow{result.method, {}, result.note});
+    if (result.values.empty()) continue;
+    for (const size_t k : {0, 1}) row.cells.push_back({result.values[k], result.u[k]});
+    for (const size_t k : {2, 3}) row.cells.push_back({result.values[k] * 1000});
+    row.cells.push_back(um(result.S));
+    row.cells.push_back(um(result.rms));
+    row.cells.push_back(um(result.held_out_rms));
+    for (const size_t k : {0, 1}) row.cells.push_back(um(positive(result.u[k])));
+    row.cells.push_back(um(result.quantisation));
+    for (const size_t k : {0, 1})
+      row.cells.push_back({reference.u[k] > 0 ? std::optional((result.values[k] - reference.values[k]) / reference.u[k])
+                                              : std::nullopt});
+    row.cells.push_back({result.effort});
+    row.cells.push_back({result.seconds});
+  }
+  return table;
+}
 
 // Planes refitted at the pose: S as the search sees it, and the rms over all points.
 struct Flatness {
@@ -49,15 +102,14 @@ std::optional<double> HeldOutRms(const std::vector<Placement>& placements, const
   return std::sqrt(squares / points);
 }
 
-ComparisonRow GridRow(const TurntableScanner& scanner, const TurntableStart& start, double step, PlaneFit kind) {
+MethodResult GridRow(const TurntableScanner& scanner, const TurntableStart& start, double step, PlaneFit kind) {
   const std::string name =
       fmt::format("grid, {}, step {:g}", kind == PlaneFit::kVertical ? "as published" : "orthogonal", step);
   Progress progress(name);
   GridBox box = scanner.Box();
   box.step = step;
-  ComparisonRow row;
+  MethodResult row;
   row.method = name;
-  row.is_grid = true;
   row.quantisation = step / std::sqrt(12.0);
   const auto [rows, columns] = box.Nodes();
   row.effort = static_cast<double>(rows) * static_cast<double>(columns);
@@ -77,7 +129,6 @@ ComparisonRow GridRow(const TurntableScanner& scanner, const TurntableStart& sta
   pose.M = grid.best.at[0];
   pose.N = grid.best.at[1];
   row.values = Values(pose);
-  row.u.resize(row.values.size());
   row.S = grid.best.value;
   row.rms = FlatnessAt(scanner.placements(), pose, kind).rms;
   if (grid.best.on_edge) row.note = "minimum on the edge";
@@ -96,25 +147,24 @@ TurntablePose Left(const TurntableScanner& scanner, const TurntableStart& start,
   return weighted ? scanner.FitWeighted(fit).Pose() : fit.Pose();
 }
 
-ComparisonRow JointRow(const TurntableScanner& scanner, const TurntableStart& start, const std::string& name,
-                       Turntable::Residuals residuals, bool weighted, const std::vector<int>& estimate) {
+MethodResult JointRow(const TurntableScanner& scanner, const TurntableStart& start, const std::string& name,
+                      Turntable::Residuals residuals, bool weighted, const std::vector<int>& estimate) {
   const Stopwatch watch;
   TurntableFit fit = scanner.Fit(start.pose, residuals, estimate);
   const bool determined = fit.solution.observability.undetermined.empty();
   if (weighted && determined) fit = scanner.FitWeighted(fit);
-  ComparisonRow row;
+  MethodResult row;
   row.method = name;
   row.seconds = watch.Seconds();
   row.effort = fit.solution.fit.iterations;
   const TurntablePose pose = fit.Pose();
   row.values = Values(pose);
-  row.u.resize(row.values.size());
   if (!determined) {
     row.note = "not determined: " + fit.solution.observability.undetermined.front();
   } else {
     for (const Parameter& parameter : Summarize(fit.solution, {}).parameters) {
       const int k = Find(fit.solution.problem.quantities, parameter.name);
-      if (k <= Turntable::kTiltY && parameter.role == Role::kEstimate) row.u[k] = parameter.u;
+      if (k <= Turntable::kTiltY && parameter.role == Role::kEstimate) row.u[static_cast<size_t>(k)] = parameter.u;
     }
     if (!fit.solution.fit.converged) row.note = "no convergence";
   }
@@ -132,16 +182,16 @@ ComparisonRow JointRow(const TurntableScanner& scanner, const TurntableStart& st
 
 Result<Comparison> TurntableScanner::Compare() const {
   SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
-  Comparison comparison{{"M", "N", "tilt_x", "tilt_y"}, {false, false, true, true}, {}};
+  std::vector<MethodResult> results;
   for (const PlaneFit kind : {PlaneFit::kVertical, PlaneFit::kOrthogonal})
-    for (const double step : kSteps) comparison.rows.push_back(GridRow(*this, start, step, kind));
+    for (const double step : kSteps) results.push_back(GridRow(*this, start, step, kind));
   using enum Turntable::Residuals;
-  comparison.rows.push_back(JointRow(*this, start, "joint, point to plane", kPlane, false, {}));
-  comparison.rows.push_back(JointRow(*this, start, "joint, depth", kDepth, false, {}));
-  comparison.rows.push_back(
+  results.push_back(JointRow(*this, start, "joint, point to plane", kPlane, false, {}));
+  results.push_back(JointRow(*this, start, "joint, depth", kDepth, false, {}));
+  results.push_back(
       JointRow(*this, start, "joint, depth, weighted, tilts", kDepth, true, {Turntable::kTiltX, Turntable::kTiltY}));
-  comparison.rows.push_back(JointRow(*this, start, "joint, depth, weighted", kDepth, true, {}));
-  return comparison;
+  results.push_back(JointRow(*this, start, "joint, depth, weighted", kDepth, true, {}));
+  return Tabulate(results);
 }
 
 Result<void> TurntableScanner::WriteSurface(const std::filesystem::path& file) const {

@@ -331,17 +331,12 @@ TEST(TextTest, TheReasonsOfAnUnreliableResultComeLast) {
 }
 
 TEST(TextTest, ARowThatWasLeftOutIsExplained) {
-  Comparison comparison{{"M", "N"}, {false, false}, {}};
-  ComparisonRow grid, joint;
-  grid.method = "grid, step 0.001";
-  grid.note = "left out: 1e+09 nodes";
-  joint.method = "joint, depth";
-  joint.values = {123.0021, 409.1};
-  joint.u = {0.011, 0.02};
-  comparison.rows = {grid, joint};
+  Comparison comparison{{{"M/mm", 6}, {"N/mm", 6}, {"s", 2}}, {}};
+  comparison.rows.push_back({"grid, step 0.001", {}, "left out: 1e+09 nodes"});
+  comparison.rows.push_back({"joint, depth", {{123.0021, 0.011}, {409.1, 0.02}, {std::nullopt}}, ""});
   const std::string text = ToText(comparison);
   EXPECT_THAT(text, AllOf(HasSubstr("grid, step 0.001: left out: 1e+09 nodes\n"), HasSubstr("123.002(11)"),
-                          HasSubstr("409.100(20)"), HasSubstr("ΔM/u")));
+                          HasSubstr("409.100(20)"), HasSubstr("M/mm")));
 }
 
 }  // namespace

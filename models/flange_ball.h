@@ -1,0 +1,77 @@
+// A ball on a robot's flange that is seated in two sockets of a tool.
+#pragma once
+#include <ceres/rotation.h>
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+#include "models/parts/chain.h"
+#include "solver/model.h"
+
+namespace scancal {
+
+// The ball rests in socket s (0 or 1) of a tool that lies somewhere in the base:
+//
+//     r = base_from_flange(q; links) ball - (socket + s spacing direction).
+//
+// A target is one location of the tool: socket_x, _y, _z, where its socket 0 holds the ball, is the target's own, and
+// so are direction_1 and _2, small turns of Target::direction about two axes across it. ball_x, _y, _z lies in the
+// flange's frame. spacing is what has a length: without it the ball would fit best into a robot of no size.
+//
+// Noise: seat moves the ball of one pose; joint_1 .. joint_n, errors of the joints of one pose, are common to nothing
+// else. Residuals are in the base: theta_1 and d_1 must be held, the tool takes them. Lengths mm, angles rad.
+class FlangeBall {
+ public:
+  // Each the first of as many as its name has components; links: kLinkNumbers a link, behind them joint_1 .. joint_n.
+  enum Index { kBall = 0, kSpacing = 3, kSocket = 4, kDirection = 7, kSeat = 9, kLinks = 12 };
+  static constexpr int kRowsPerPoint = 3;
+
+  struct View {  // a pose of the robot
+    std::vector<double> joints;
+    int socket = 0;
+  };
+  struct Target {
+    std::string name;
+    std::vector<View> views;
+    Eigen::Vector3d direction =
+        Eigen::Vector3d::UnitX();  // from socket 0 to socket 1, base: where direction_1, _2 start
+    Eigen::Vector3d across[2] = {Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};  // their axes
+  };
+
+  // Links as SetDefaultLinkRoles says; seat estimated, joints held.
+  explicit FlangeBall(std::vector<Link> links);
+  const Quantities& quantities() const { return quantities_; }
+  Quantity& quantity(int k) { return quantities_[k]; }
+  const std::vector<Link>& links() const { return links_; }
+  int FirstOfJoints() const { return kLinks + kLinkNumbers * static_cast<int>(links_.size()); }
+  int Points(const View&) const { return 1; }
+  double Count(const View&) const { return kRowsPerPoint; }
+  static void SetDirection(const Eigen::Vector3d& direction, Target* target);  // of any length but zero
+
+  template <class T>
+  void Residual(const Target& tool, const View& pose, const Seen<T>& q, T* r) const;
+
+ private:
+  std::vector<Link> links_;
+  Quantities quantities_;
+};
+
+template <class T>
+void FlangeBall::Residual(const Target& tool, const View& pose, const Seen<T>& q, T* r) const {
+  std::vector<T> errors(q.q + kLinks, q.q + FirstOfJoints());
+  for (size_t k = 0; k < links_.size(); ++k) errors[kLinkNumbers * k] += q[FirstOfJoints() + static_cast<int>(k)];
+  ChainFrame<T> flange = MakeChainFrame<T>(Eigen::Isometry3d::Identity());
+  MoveAlong(links_, pose.joints.data(), errors.data(), &flange);
+  T turn[3], along[3], direction[3];
+  for (int i = 0; i < 3; ++i) {
+    turn[i] = q[kDirection] * tool.across[0][i] + q[kDirection + 1] * tool.across[1][i];
+    direction[i] = T(tool.direction[i]);
+  }
+  ceres::AngleAxisRotatePoint(turn, direction, along);
+  for (int i = 0; i < 3; ++i) {
+    r[i] = flange.p[i] + flange.x[i] * q[kBall] + flange.y[i] * q[kBall + 1] + flange.z[i] * q[kBall + 2] -
+           q[kSocket + i] - q(0, kSeat + i);
+    if (pose.socket == 1) r[i] -= along[i] * q[kSpacing];
+  }
+}
+
+}  // namespace scancal

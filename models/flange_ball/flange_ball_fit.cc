@@ -1,0 +1,83 @@
+#include "models/flange_ball/flange_ball_fit.h"
+#include <Eigen/QR>
+#include <algorithm>
+#include <memory>
+
+namespace scancal {
+namespace {
+
+constexpr double kLeastSigma_mm = 1e-9;  // noiseless data need a scale too
+
+double CountIn(const FlangeBall::Target& tool, int socket) {
+  return static_cast<double>(std::count_if(tool.views.begin(), tool.views.end(),
+                                           [&](const FlangeBall::View& view) { return view.socket == socket; }));
+}
+
+// What the flanges of a socket's poses have in common.
+Eigen::Matrix<double, 3, 4> MeanFlange(const std::vector<Link>& links, const FlangeBall::Target& tool, int socket) {
+  Eigen::Matrix<double, 3, 4> sum = Eigen::Matrix<double, 3, 4>::Zero();
+  for (const FlangeBall::View& view : tool.views)
+    if (view.socket == socket) sum += BaseFromFlange(links, view.joints).affine();
+  return sum / CountIn(tool, socket);
+}
+
+}  // namespace
+
+Eigen::Vector3d RobotWithBall::Socket(const FlangeBall::Target& tool, int socket) const {
+  return MeanFlange(links, tool, socket) * ball.homogeneous();
+}
+
+// (R - mean R) ball = -(p - mean p) over all poses.
+RobotWithBall FitBall(const std::vector<Link>& links, const std::vector<FlangeBall::Target>& tools) {
+  Eigen::Index rows = 0;
+  for (const FlangeBall::Target& tool : tools) rows += 3 * std::ssize(tool.views);
+  Eigen::MatrixXd moved(rows, 4);
+  Eigen::Index row = 0;
+  for (const FlangeBall::Target& tool : tools) {
+    const Eigen::Matrix<double, 3, 4> mean[2] = {MeanFlange(links, tool, 0), MeanFlange(links, tool, 1)};
+    for (const FlangeBall::View& view : tool.views) {
+      moved.middleRows<3>(row) = BaseFromFlange(links, view.joints).affine() - mean[view.socket];
+      row += 3;
+    }
+  }
+  return {links, moved.leftCols<3>().colPivHouseholderQr().solve(-moved.col(3))};
+}
+
+Seating SeatingOf(const RobotWithBall& robot, const FlangeBall::Target& tool) {
+  const Eigen::Vector3d sockets[2] = {robot.Socket(tool, 0), robot.Socket(tool, 1)};
+  double sum = 0;
+  for (const FlangeBall::View& view : tool.views) sum += (robot.InBase(view.joints) - sockets[view.socket]).norm();
+  return {sum / static_cast<double>(tool.views.size()), (sockets[1] - sockets[0]).norm()};
+}
+
+Solution FitFlangeBall(const FlangeBall& model, std::vector<FlangeBall::Target> tools, int max_iterations) {
+  const RobotWithBall nominal = FitBall(model.links(), tools);
+  double spread = kLeastSigma_mm;
+  for (FlangeBall::Target& tool : tools) {
+    FlangeBall::SetDirection(nominal.Socket(tool, 1) - nominal.Socket(tool, 0), &tool);
+    spread = std::max(spread, SeatingOf(nominal, tool).spread);
+  }
+  Problem problem = MakeProblem(std::make_shared<const FlangeBall>(model), tools);
+  problem.WeighEqually(spread);
+  Estimate start = NominalStart(problem);
+  for (size_t t = 0; t < tools.size(); ++t) {
+    std::vector<double> values = Values(problem, start, t);
+    Eigen::Vector3d::Map(&values[FlangeBall::kSocket]) = nominal.Socket(tools[t], 0);
+    if (!(model.quantities()[FlangeBall::kBall].u > 0)) Eigen::Vector3d::Map(&values[FlangeBall::kBall]) = nominal.ball;
+    SetValues(problem, values, t, &start);
+  }
+  return Solve(std::move(problem), start, {max_iterations});
+}
+
+RobotWithBall RobotOf(const std::vector<Link>& nominal, const Solution& solution) {
+  const std::vector<double> values = Values(solution.problem, solution.fit.estimate, 0);
+  RobotWithBall robot{nominal, Eigen::Vector3d::Map(&values[FlangeBall::kBall])};
+  for (size_t k = 0; k < nominal.size(); ++k) {
+    const double* error = &values[FlangeBall::kLinks + kLinkNumbers * k];
+    Link& link = robot.links[k];
+    for (double* number : {&link.theta, &link.d, &link.a, &link.alpha, &link.beta}) *number += *error++;
+  }
+  return robot;
+}
+
+}  // namespace scancal
