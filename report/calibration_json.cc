@@ -1,4 +1,5 @@
 #include "report/calibration_json.h"
+#include <algorithm>
 #include <cmath>
 #include "report/montecarlo_json.h"
 #include "report/uncertainty_json.h"
@@ -93,6 +94,31 @@ Json BudgetJson(const Calibration& calibration) {
   return lines;
 }
 
+Json FrameJson(const Eigen::Matrix4d& frame) {
+  Json rows = Json::array();
+  for (int i = 0; i < 4; ++i) rows.push_back({frame(i, 0), frame(i, 1), frame(i, 2), frame(i, 3)});
+  return rows;
+}
+
+Json ErrorsJson(const std::vector<double>& errors) {
+  double largest = 0, sum = 0;
+  for (const double error : errors) {
+    largest = std::max(largest, std::abs(error));
+    sum += std::abs(error);
+  }
+  return {{"max", largest}, {"mean", sum / static_cast<double>(errors.size())}, {"errors", errors}};
+}
+
+// Models without such a check or frames have no such keys.
+void AddCheckAndFrames(const Calibration& c, Json* json) {
+  for (const auto& [name, frame] : c.frames) (*json)[name] = FrameJson(frame);
+  if (c.check.after.empty()) return;
+  (*json)["check"] = {{"before", ErrorsJson(c.check.before)},
+                      {"after", ErrorsJson(c.check.after)},
+                      {"names", c.check.names},
+                      {"pairs", c.check.after.size()}};
+}
+
 Json VolumeJson(const UncertaintyMap& volume) {
   if (volume.rows.empty()) return Json::object();
   Json units = Json::array(), rows = Json::array();
@@ -122,6 +148,9 @@ Json ToJson(const Calibration& c) {
   json["warnings"] = c.warnings;
   json["parameters"] = Json::array();
   for (const Parameter& parameter : c.parameters) json["parameters"].push_back(ParameterJson(parameter));
+  json["determined"] = Json::object();
+  for (const Parameter& parameter : c.parameters) json["determined"][parameter.name] = parameter.determined;
+  AddCheckAndFrames(c, &json);
   json["covariance"] = Json::array();
   for (Eigen::Index i = 0; i < c.covariance.rows(); ++i) {
     Json row = Json::array();

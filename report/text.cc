@@ -4,88 +4,34 @@
 #include <cmath>
 #include <numbers>
 #include "report/text_table.h"
+#include "report/uncertainty_text.h"
 
 namespace scancal {
 namespace {
 
+constexpr size_t kFewNames = 6, kMostTargets = 30;
+constexpr double kTakesPart = 0.2;  // of a unit vector
+
 std::string Shown(double number) { return number > 0 ? Significant(number, 2) : "-"; }
-
-// Degrees of freedom beyond counting: k no longer depends on them.
-std::string Dof(double dof) { return dof < 1e6 ? Count(std::floor(dof)) : "infinite"; }
-
-std::string Percent(double share) { return share < 0.0005 ? "0.0" : fmt::format("{:.1f}", 100 * share); }
-
-std::string Parameters(const Calibration& c) {
-  TextTable table(
-      {"", "value", "unit", "u", "U (95 %)", "k", "dof", "u naive", "u clustered", "u jackknife", "u bootstrap"});
-  for (const Parameter& p : c.parameters) {
-    if (p.role == Role::kHold && p.value == 0) continue;
-    if (p.role != Role::kEstimate) {
-      table.Add({p.name, Concise(p.value, p.u), Name(p.unit), Shown(p.u), "", "", "", "", "", "",
-                 p.role == Role::kHold ? "held" : "considered"});
-      continue;
-    }
-    table.Add({p.name, Concise(p.value, p.u), Name(p.unit), Shown(p.u), Shown(p.U), Significant(p.k, 3), Dof(p.dof),
-               Shown(p.u_naive), Shown(p.u_clustered), Shown(p.u_jackknife), Shown(p.u_bootstrap)});
-  }
-  return table.Text();
-}
 
 std::string Targets(const Calibration& c) {
   TextTable table({"target", "points", "missing in scan", "set aside", "rms(" + c.residual + ")/mm"});
   std::string reasons;
-  for (const TargetSummary& target : c.targets) {
+  for (size_t t = 0; t < c.targets.size(); ++t) {
+    const TargetSummary& target = c.targets[t];
     double set_aside = 0;
     for (const auto& [reason, count] : target.set_aside) {
       set_aside += count;
       reasons += "set aside: " + target.name + ": " + Count(count) + " points " + reason + "\n";
     }
-    table.Add({target.name, Count(target.points), Count(target.missing), Count(set_aside), Significant(target.rms, 4)});
+    if (t < kMostTargets)
+      table.Add(
+          {target.name, Count(target.points), Count(target.missing), Count(set_aside), Significant(target.rms, 4)});
   }
+  if (c.targets.size() > kMostTargets)
+    reasons = "and " + Count(static_cast<double>(c.targets.size() - kMostTargets)) +
+              " more targets, all in calibration.json\n" + reasons;
   return table.Text() + reasons;
-}
-
-// Which target moves which parameter, in units of its u.
-std::string LeaveOneOut(const Calibration& c) {
-  if (c.jackknife.empty()) return "";
-  std::vector<std::string> header = {"without target"};
-  for (const std::string& name : c.estimated) header.push_back(name + " moves by");
-  TextTable table(header);
-  for (size_t t = 0; t < c.jackknife.size(); ++t) {
-    std::vector<std::string> row = {c.targets[t].name};
-    for (size_t k = 0; k < c.estimated.size(); ++k) {
-      const Parameter& p = *c.Find(c.estimated[k]);
-      row.push_back(fmt::format("{:+.2f} u", (c.jackknife[t][k] - p.value) / p.u));
-    }
-    table.Add(row);
-  }
-  return table.Text() + "\n";
-}
-
-// Where u comes from: the budget, and its sum.
-std::string BudgetText(const Calibration& c) {
-  std::vector<std::string> header = {"u comes from", "type", "value", "unit", "dof"};
-  for (const std::string& name : c.estimated) {
-    header.push_back("u(" + name + ")");
-    header.push_back("share/%");
-  }
-  TextTable table(header);
-  for (const BudgetLine& line : c.budget) {
-    std::vector<std::string> row = {line.source, std::string(1, line.type), Significant(line.u, 2), Name(line.unit),
-                                    Dof(line.dof)};
-    for (size_t k = 0; k < line.contribution.size(); ++k) {
-      row.push_back(Significant(line.contribution[k], 2));
-      row.push_back(Percent(line.share[k]));
-    }
-    table.Add(row);
-  }
-  std::vector<std::string> sum = {"combined", "", "", "", ""};
-  for (const std::string& name : c.estimated) {
-    sum.push_back(Significant(c.Find(name)->u, 2));
-    sum.push_back("100");
-  }
-  table.Add(sum);
-  return table.Text();
 }
 
 // To the second digit of u, as Concise has it.
@@ -129,6 +75,29 @@ std::string VolumeText(const UncertaintyMap& volume) {
   return text + "; the noise of a single reading is not in it\n";
 }
 
+std::string GridText(const GridMinimum& grid) {
+  if (grid.at.empty()) return "";
+  std::string text = "grid search: ";
+  for (size_t k = 0; k < grid.at.size(); ++k) text += grid.names[k] + " = " + Significant(grid.at[k], 6) + " mm, ";
+  return text + "S = " + Significant(grid.S, 4) + " mm (step " + Significant(grid.step, 2) + " mm, " +
+         Count(grid.nodes) + " nodes)\n";
+}
+
+std::string CheckText(const LengthCheck& check) {
+  if (check.after.empty()) return "";
+  const auto figures = [](const std::vector<double>& errors) {
+    double largest = 0, sum = 0;
+    for (const double error : errors) {
+      largest = std::max(largest, std::abs(error));
+      sum += std::abs(error);
+    }
+    return Significant(largest, 3) + " mm at most, " + Significant(sum / static_cast<double>(errors.size()), 3) +
+           " mm on average";
+  };
+  return "error of " + Count(static_cast<double>(check.after.size())) +
+         " known lengths that took no part: " + figures(check.after) + "; before: " + figures(check.before) + "\n";
+}
+
 bool HasDeclared(const Calibration& c) {
   return std::any_of(c.budget.begin(), c.budget.end(), [](const BudgetLine& line) { return line.type == 'B'; });
 }
@@ -142,26 +111,27 @@ std::string CellText(const ComparisonCell& cell, int digits) {
 }  // namespace
 
 std::string ToText(const Calibration& c) {
-  std::string text = Parameters(c);
+  std::string text = ParametersText(c);
   if (!c.estimated.empty()) text += "\n" + BudgetText(c);
   if (!HasDeclared(c)) text += "repeatability and fit only: not a traceable uncertainty\n";
   if (c.monte_carlo.trials > 0) text += "\n" + MonteCarloText(c);
-  text += "\n" + Targets(c) + "\n" + LeaveOneOut(c);
-  text += "grid search: ";
-  for (size_t k = 0; k < c.grid.at.size(); ++k)
-    text += c.grid.names[k] + " = " + Significant(c.grid.at[k], 6) + " mm, ";
-  text += "S = " + Significant(c.grid.S, 4) + " mm (step " + Significant(c.grid.step, 2) + " mm, " +
-          Count(c.grid.nodes) + " nodes)\n";
+  text += "\n" + Targets(c) + "\n" + LeaveOneOutText(c);
+  text += GridText(c.grid) + CheckText(c.check);
   text += "refinement: " + c.residual + " residual, " + std::to_string(c.iterations) + " iterations, " +
-          Significant(c.seconds * 1000, 3) + " ms; sigma = " + Significant(c.sigma, 4) + " mm, within profiles " +
-          Significant(c.lack_of_fit.pure_error_sigma, 4) + " mm\n";
+          Significant(c.seconds * 1000, 3) + " ms; sigma = " + Significant(c.sigma, 4) + " mm" +
+          (c.lack_of_fit.pure_error_sigma > 0
+               ? ", within profiles " + Significant(c.lack_of_fit.pure_error_sigma, 4) + " mm"
+               : "") +
+          "\n";
   if (c.lack_of_fit.dof1 > 0)
     text += "lack of fit: F = " + Significant(c.lack_of_fit.F, 4) + " (" + Count(c.lack_of_fit.dof1) + ", " +
             Count(c.lack_of_fit.dof2) + " degrees of freedom, p " +
             (c.lack_of_fit.p < 1e-16 ? "< 1e-16" : "= " + Significant(c.lack_of_fit.p, 2)) + ")\n";
   if (c.condition > 0) {
     text += "condition: " + Significant(c.condition, 3) + "; least determined direction (by white noise):";
-    for (const auto& [name, component] : c.weakest) text += " " + name + " " + Significant(component, 2);
+    for (const auto& [name, component] : c.weakest)
+      if (c.weakest.size() < kFewNames || std::abs(component) > kTakesPart)
+        text += " " + name + " " + Significant(component, 2);
     text += "\n";
   }
   if (c.joint.k > 0)

@@ -12,6 +12,7 @@ namespace scancal {
 namespace {
 
 constexpr double kCoverage = 0.95;
+constexpr double kKnown_dof = 1e9;  // as good as infinitely many
 constexpr double kRounding_mm = 1e-9;  // a pure error below this is none
 
 std::vector<double> Plain(const Eigen::VectorXd& x) { return {x.data(), x.data() + x.size()}; }
@@ -61,11 +62,14 @@ void AddParameters(const Solution& solution, const Headline& headline, const Cov
     p.unit = quantity.unit;
     p.role = quantity.role;
     p.value = quantity.value;
+    p.source = quantity.Source();
+    p.determined = quantity.role == Role::kConsider ? "considered" : "held";
     if (quantity.role == Role::kConsider) p.u = quantity.u;
     if (quantity.role != Role::kEstimate) continue;
     result->estimated.push_back(p.name);
     p.value = solution.fit.estimate.system[e];
     p.u = std::sqrt(headline.covariance(e, e));
+    p.determined = quantity.u > 0 && p.u * p.u > quantity.u * quantity.u / 2 ? "prior" : "data";
     p.u_naive = std::sqrt(solution.naive.matrix(e, e));
     p.u_clustered = std::sqrt(clustered.matrix(e, e));
     if (jackknife.covariance.size()) p.u_jackknife = std::sqrt(jackknife.covariance(e, e));
@@ -140,10 +144,15 @@ Calibration Summarize(const Solution& solution, const PureError& pure_error) {
   AddParameters(solution, headline, clustered, jackknife, &result);
   AddTargets(solution, pure_error, &result);
   if (!solution.variances) result.budget.front().u = result.sigma;
-  if (solution.variances) AddMisfits(solution, clustered.dof, &result);
+  // Views of many rows tell the variances better than their mere number.
+  const double noise_dof =
+      solution.variances && headline.dof.size() > 0
+          ? std::max(clustered.dof, std::min(headline.dof.minCoeff(), kKnown_dof))
+          : clustered.dof;
+  if (solution.variances) AddMisfits(solution, noise_dof, &result);
   for (Eigen::Index t = 0; t < jackknife.estimates.rows(); ++t)
     result.jackknife.push_back(Plain(jackknife.estimates.row(t).transpose()));
-  Judge(solution, jackknife, clustered.dof, &result);
+  Judge(solution, jackknife, noise_dof, &result);
   return result;
 }
 

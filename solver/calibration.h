@@ -13,7 +13,11 @@ struct Parameter {
   std::string name;
   Unit unit = Unit::kMm;
   Role role = Role::kHold;
+  std::string source;  // its line in the budget; several parameters may share one
   double value = 0;
+  // By what an estimated one is known: "data", or "prior" where the prior brings more than half of the information;
+  // "held" or "considered" else.
+  std::string determined;
   // Standard uncertainties; 0 for what is held. u is the headline (solver/uncertainty/headline.h).
   double u = 0, u_naive = 0, u_clustered = 0, u_jackknife = 0, u_bootstrap = 0;
   double dof = 0, k = 0, U = 0;  // U = k u: 95 % coverage
@@ -57,6 +61,12 @@ struct BudgetLine {
   std::vector<double> contribution;  // u per estimated parameter
   std::vector<double> share;         // of the parameter's variance
   double dof = 0;                    // infinite for what was declared
+};
+
+// Known lengths that took no part in the calibration: measured minus known, mm.
+struct LengthCheck {
+  std::vector<std::string> names;
+  std::vector<double> before, after;  // as the nominal instrument shows them, and the calibrated one
 };
 
 struct LackOfFit {  // of everything within views against everything between them: noise that is not white shows, too
@@ -130,6 +140,8 @@ struct Calibration {
   std::vector<std::vector<double>> jackknife;  // per target: the estimated parameters without it
   MonteCarloSummary monte_carlo;
   UncertaintyMap volume;
+  std::map<std::string, Eigen::Matrix4d> frames;  // rigid motions of the model, by name, mm
+  LengthCheck check;
   int iterations = 0;
   bool converged = false;
   double seconds = 0;

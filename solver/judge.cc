@@ -23,15 +23,15 @@ std::string LeastDetermined(const std::map<std::string, double>& direction) {
   return "; " + worst->first + " is least determined: hold it, give it a prior, or allow more iterations";
 }
 
-void JudgeJackknife(const Solution& solution, const Jackknife& jackknife, double clustered_dof, Calibration* result) {
-  if (jackknife.estimates.rows() < 2 || clustered_dof < 1) return;
+void JudgeJackknife(const Solution& solution, const Jackknife& jackknife, double noise_dof, Calibration* result) {
+  if (jackknife.estimates.rows() < 2 || noise_dof < 1) return;
   const ExpectedJackknife expected = ExpectLeaveOneTargetOut(solution.problem, solution.fit.estimate, solution.linear);
   for (size_t k = 0; k < result->estimated.size(); ++k) {
     const auto e = static_cast<Eigen::Index>(k);
     // What no target moves, because only its prior or a declaration holds it, is rounding over rounding.
     if (!(expected.variance[e] > 1e-12 * result->covariance(e, e))) continue;
     const double ratio = jackknife.covariance(e, e) / expected.variance[e];
-    const double p = FUpperTail(ratio, expected.dof[e], clustered_dof);
+    const double p = FUpperTail(ratio, expected.dof[e], noise_dof);
     if (p >= kSuspicious) continue;
     (p < kContradiction ? result->unreliable : result->warnings)
         .push_back(fmt::format(
@@ -120,8 +120,8 @@ void JudgePriors(const Problem& problem, Calibration* result) {
 
 }  // namespace
 
-void Judge(const Solution& solution, const Jackknife& jackknife, double clustered_dof, Calibration* calibration) {
-  JudgeJackknife(solution, jackknife, clustered_dof, calibration);
+void Judge(const Solution& solution, const Jackknife& jackknife, double noise_dof, Calibration* calibration) {
+  JudgeJackknife(solution, jackknife, noise_dof, calibration);
   if (solution.variances) {
     JudgeMisfits(calibration);
     JudgeVariances(*solution.variances, calibration);
@@ -130,7 +130,7 @@ void Judge(const Solution& solution, const Jackknife& jackknife, double clustere
     JudgeFit(calibration->lack_of_fit, calibration);
   }
   JudgePriors(solution.problem, calibration);
-  if (!calibration->estimated.empty() && clustered_dof < 1)
+  if (!calibration->estimated.empty() && noise_dof < 1)
     calibration->unreliable.push_back(
         "too few views: not more than there are quantities to estimate, so their scatter tells nothing");
   if (!solution.fit.converged)

@@ -1,0 +1,41 @@
+// What a robot's dataset.yaml declares, and the tables that it names.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+#include "io/dataset.h"
+#include "io/result.h"
+#include "models/robot_ball/measured.h"
+
+namespace scancal {
+
+// parameters: links: {estimate: 0, u_length: 0.5, u_angle: 0.1}
+struct LinkSetting {
+  bool hold = false;                 // all of them; what is named singly stands
+  double u_length = 0, u_angle = 0;  // of the prior of each that is estimated, mm, rad; 0: none
+};
+
+struct RobotDeclaration {
+  Dataset dataset;
+  RobotData data;
+  std::vector<double> u_of_spheres;  // of each centre's coordinates, mm; 0: exactly known
+  bool centres_have_u = false;       // the balls' noise was declared line by line
+  LinkSetting links;
+  std::vector<std::filesystem::path> files;  // all that were read, dataset.yaml first
+  std::vector<std::string> warnings;         // worth knowing
+};
+
+// Takes every key of the data set and reads its tables. Errors name file, line and column, what was found and a remedy;
+// what can be used but should be known is a warning. The order of lines does not matter but for the order of stations
+// and poses in the result.
+Result<RobotDeclaration> DeclareRobot(const Dataset& dataset);
+
+// The same from tables that were read before, as calibration.json keeps them: `read` holds data, u_of_spheres,
+// centres_have_u and warnings.
+Result<RobotDeclaration> RedeclareRobot(const Dataset& dataset, RobotDeclaration read);
+
+// The model of those links and spheres, with roles, values, priors and influences as declared.
+Result<RobotBall> DeclareModel(const RobotDeclaration& declaration);
+
+}  // namespace scancal
