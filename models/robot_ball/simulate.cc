@@ -2,6 +2,7 @@
 #include <glog/logging.h>
 #include <cmath>
 #include <numbers>
+#include "models/robot_ball/hand_eye.h"
 #include "models/robot_ball/pose_planner.h"
 
 namespace scancal {
@@ -33,7 +34,8 @@ Eigen::Vector3d Translation(PoseConfiguration configuration, int k) {
   const int axis = k % 3;
   const bool is_far =
       configuration == PoseConfiguration::kSpatial || axis < (configuration == PoseConfiguration::kPlanar ? 2 : 1);
-  return (k / 3 % 2 == 0 ? 1.0 : -1.0) * (1 + k / 6) * (is_far ? kFar : kNear) * Eigen::Vector3d::Unit(axis);
+  const double part = 1.0 / (1 + k / 6);  // NOLINT(bugprone-integer-division): six directions, then again but shorter
+  return (k / 3 % 2 == 0 ? part : -part) * (is_far ? kFar : kNear) * Eigen::Vector3d::Unit(axis);
 }
 
 // Z towards the robot and upwards, X along Y of the base: how things to be seen lie before the robot, more or less.
@@ -58,12 +60,8 @@ class Simulation {
  public:
   explicit Simulation(const RobotScene& scene)
       : scene_(scene), planner_(scene.links, scene.flange_from_scanner), spheres_(PublishedArtifact()) {
-    CHECK_EQ(scene.link_errors.size(), scene.links.size());
-    for (size_t k = 0; k < scene.links.size(); ++k) {
-      const Link &nominal = scene.links[k], &error = scene.link_errors[k];
-      true_links_.push_back({nominal.theta + error.theta, nominal.d + error.d, nominal.a + error.a,
-                             nominal.alpha + error.alpha, nominal.beta + error.beta});
-    }
+    data_.links = scene.links;
+    truth_ = {scene.flange_from_scanner, scene.link_errors};
   }
   SimulatedRobot Run() const;
 
@@ -83,7 +81,8 @@ class Simulation {
   const RobotScene& scene_;
   PosePlanner planner_;
   std::vector<RobotBall::Sphere> spheres_;  // truth
-  std::vector<Link> true_links_;
+  RobotData data_;                          // nominal links
+  RobotSetup truth_;
 };
 
 std::vector<RobotBall::Sphere> Simulation::MeasuredSpheres() const {
@@ -130,12 +129,10 @@ Simulation::PlannedStation Simulation::PlanStation(int number) const {
 
 RobotBall::View Simulation::See(const std::vector<double>& joints, const Eigen::Isometry3d& base_from_artifact,
                                 const std::vector<RobotBall::Sphere>& spheres, Random* noise) const {
-  Eigen::Isometry3d base_from_flange = BaseFromFlange(true_links_, joints);
-  for (double& x : base_from_flange.translation()) x += scene_.repeatability * noise->Normal();
-  const Eigen::Isometry3d scanner_from_artifact =
-      (base_from_flange * scene_.flange_from_scanner).inverse() * base_from_artifact;
-  RobotBall::View view;
-  view.joints = joints;
+  RobotBall::View view{.name = "", .joints = joints};
+  Eigen::Isometry3d base_from_scanner = BaseFromScanner(data_, truth_, view);
+  for (double& x : base_from_scanner.translation()) x += scene_.repeatability * noise->Normal();
+  const Eigen::Isometry3d scanner_from_artifact = base_from_scanner.inverse() * base_from_artifact;
   for (size_t b = 0; b < spheres.size(); ++b) {
     Eigen::Vector3d centre = scanner_from_artifact * spheres[b].centre;
     const bool is_seen = centre.norm() <= scene_.field;
@@ -182,8 +179,7 @@ CheckLength Simulation::Check(int number) const {
 }
 
 SimulatedRobot Simulation::Run() const {
-  SimulatedRobot robot;
-  robot.data.links = scene_.links;
+  SimulatedRobot robot{data_, truth_, {}};
   robot.data.spheres = MeasuredSpheres();
   robot.data.u_spheres = scene_.u_spheres;
   robot.data.ball_diameter = kBallDiameter;
@@ -194,7 +190,6 @@ SimulatedRobot Simulation::Run() const {
     robot.base_from_artifact.push_back(planned.base_from_artifact);
   }
   for (int k = 0; k < scene_.check_positions; ++k) robot.data.check.push_back(Check(k));
-  robot.truth = {scene_.flange_from_scanner, scene_.link_errors};
   return robot;
 }
 

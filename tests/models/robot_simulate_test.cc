@@ -5,6 +5,7 @@
 #include <numbers>
 #include "models/robot_ball/declaration.h"
 #include "models/robot_ball/gauge.h"
+#include "models/robot_ball/hand_eye.h"
 #include "models/robot_ball/inverse_kinematics.h"
 #include "models/robot_ball/simulate.h"
 #include "models/robot_ball/write_simulated.h"
@@ -85,15 +86,17 @@ TEST(SimulateRobot, FirstPosesOnlyTranslate) {
        {PoseConfiguration::kSpatial, PoseConfiguration::kPlanar, PoseConfiguration::kCollinear}) {
     RobotScene scene;
     scene.configuration = configuration;
+    scene.translations = 12;
     const SimulatedRobot robot = SimulateRobot(scene);
     const auto& views = robot.data.stations[0].views;
     const Eigen::Isometry3d first = BaseFromFlange(robot.data.links, views[0].joints);
-    for (int k = 1; k <= 6; ++k) {
+    for (int k = 1; k <= 12; ++k) {
+      EXPECT_EQ(views[k].balls.size(), 4);
       const Eigen::Isometry3d pose = BaseFromFlange(robot.data.links, views[k].joints);
       EXPECT_LT((pose.linear() - first.linear()).norm(), 1e-12);
-      EXPECT_GT((pose.translation() - first.translation()).norm(), 2);
+      EXPECT_GT((pose.translation() - first.translation()).norm(), 0.9);
     }
-    const Eigen::Isometry3d other = BaseFromFlange(robot.data.links, views[7].joints);
+    const Eigen::Isometry3d other = BaseFromFlange(robot.data.links, views[13].joints);
     EXPECT_GT((other.linear() - first.linear()).norm(), 0.1);
   }
 }
@@ -146,14 +149,8 @@ TEST(SimulateRobot, NoiseIsAsDeclared) {
 
 TEST(SimulateRobot, ScaleIsItsLengthApart) {
   const SimulatedRobot robot = SimulateRobot(Noiseless());
-  std::vector<Link> links = robot.data.links;
-  for (size_t k = 0; k < links.size(); ++k) {
-    const Link& error = robot.truth.link_errors[k];
-    links[k] = {links[k].theta + error.theta, links[k].d + error.d, links[k].a + error.a, links[k].alpha + error.alpha,
-                links[k].beta + error.beta};
-  }
   const auto in_base = [&](const RobotBall::View& view) -> Eigen::Vector3d {
-    return BaseFromFlange(links, view.joints) * robot.truth.flange_from_scanner * view.balls.at(0).centre;
+    return BaseFromScanner(robot.data, robot.truth, view) * view.balls.at(0).centre;
   };
   for (const CheckLength& check : robot.data.check) {
     EXPECT_NEAR((in_base(check.first_pose) - in_base(check.second_pose)).norm(), kScaleLength, 1e-9);
