@@ -24,6 +24,7 @@ class FlangeBallScanner final : public Scanner {
   Result<void> WriteSurface(const std::filesystem::path& file) const override;  // an Error: there is no search
 
  private:
+  double Spacing() const;  // as declared, mm
   Result<Solution> Fit(const RefineChoice& choice) const;
 
   FlangeBallDeclaration declaration_;
