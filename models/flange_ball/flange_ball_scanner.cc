@@ -97,6 +97,7 @@ Result<Calibration> FlangeBallScanner::Calibrate(const RefineChoice& choice) con
     result.check.after.push_back(SeatingOf(robot, tool).spacing - Spacing());
   }
   JudgeBall(robot, &result);
+  if (!check_.empty()) JudgeHeldOut(MeanSpread(robot, targets_), MeanSpread(robot, check_), &result);
   return result;
 }
 
@@ -155,6 +156,15 @@ void JudgeBall(const RobotWithBall& robot, Calibration* calibration) {
       "the ball lies {:.2g} mm from the axis of the last joint: {} and ball_z are hardly determined one by one, only "
       "where the ball is; hold theta_{} and alpha_{}, or give priors",
       from_axis, free, before, before));
+}
+
+void JudgeHeldOut(double spread, double held_out, Calibration* calibration) {
+  constexpr double kMuchMore = 1.5;
+  if (held_out < kMuchMore * spread) return;
+  calibration->warnings.push_back(fmt::format(
+      "at the locations held out the ball strays by {:.3g} mm on average, {:.2g} times as far as where the robot was "
+      "calibrated: the model lacks something there, and u does not hold it; calibrate with more locations of the tool",
+      held_out, held_out / spread));
 }
 
 Result<std::unique_ptr<Scanner>> LoadFlangeBall(const Dataset& dataset) {

@@ -37,6 +37,9 @@ Result<void> CheckDetermined(const Solution& solution);
 // Warns of a ball so near to the last joint's axis that the link before is known to a few mm only.
 void JudgeBall(const RobotWithBall& robot, Calibration* calibration);
 
+// Warns of a ball that strays much farther where the tool was held out (mean spreads, mm).
+void JudgeHeldOut(double spread, double held_out, Calibration* calibration);
+
 Result<std::unique_ptr<Scanner>> LoadFlangeBall(const Dataset& dataset);
 Result<std::unique_ptr<Scanner>> ReloadFlangeBall(const Dataset& dataset, const Json& data, const std::string& file);
 // The ball of every pose in the base, held out ones as well; a scan is a location of the tool.
