@@ -15,12 +15,18 @@ using Eigen::Index, Eigen::Isometry3d, Eigen::Matrix3d, Eigen::MatrixXd, Eigen::
 // Columns of the linear model: R column by column, t, the factor of F's translation.
 constexpr int kR = 0, kT = 9, kFactor = 12, kColumns = 13;
 constexpr int kStationColumns = 12;  // N column by column, n
-// Turns and movements below these, relative to the largest, are the robot's repeatability, not its motion.
-constexpr double kSmallestTurn_rad = 1e-3, kSmallestMove = 1e-3;
+// Turns and movements below these are the robot's repeatability, not its motion.
+constexpr double kSmallestTurn_rad = 1e-3, kSmallestMove_mm = 0.01;
 
 int Balls(const Station& station) {
   int balls = 0;
   for (const RobotBall::View& view : station.views) balls += static_cast<int>(view.balls.size());
+  return balls;
+}
+
+int Balls(const std::vector<Station>& stations) {
+  int balls = 0;
+  for (const Station& station : stations) balls += Balls(station);
   return balls;
 }
 
@@ -94,7 +100,7 @@ Result<Matrix3d> Rotation(const std::vector<Station>& stations, const MatrixXd& 
   const Eigen::JacobiSVD<MatrixXd> svd(left, Eigen::ComputeFullV);
   VectorXd sigma = VectorXd::Zero(9);
   sigma.head(svd.singularValues().size()) = svd.singularValues();
-  if (sigma[7] < kSmallestMove * sigma[0] || sigma[8] > 0.5 * sigma[7])
+  if (sigma[7] < kSmallestMove_mm * std::sqrt(Balls(stations)) || sigma[8] > 0.5 * sigma[7])
     return Error{fmt::format(
         "{}: the poses do not determine the turn of the hand-eye: they hardly turn or move the flange, or not about "
         "two axes or in three directions, or they contradict each other",
@@ -106,9 +112,7 @@ Result<Matrix3d> Rotation(const std::vector<Station>& stations, const MatrixXd& 
 Result<Vector3d> Translation(const std::vector<Station>& stations, const MatrixXd& rows, const Matrix3d& rotation) {
   const VectorXd known = rows.leftCols<9>() * rotation.reshaped() + rows.col(kFactor);
   const Eigen::JacobiSVD<MatrixXd> svd(rows.middleCols<3>(kT), Eigen::ComputeThinU | Eigen::ComputeThinV);
-  int balls = 0;
-  for (const Station& station : stations) balls += Balls(station);
-  const double scale = std::sqrt(balls);  // a singular value over it is about the rms turn
+  const double scale = std::sqrt(Balls(stations));  // a singular value over it is about the rms turn
   if (svd.singularValues()[0] < kSmallestTurn_rad * scale)
     return Error{fmt::format(
         "{}: the poses do not rotate the flange: the translation of the hand-eye is not determined; turn the robot "

@@ -18,16 +18,16 @@ bool Sees(const View& view, int sphere) {
   return std::ranges::any_of(view.balls, [&](const SeenBall& ball) { return ball.sphere == sphere; });
 }
 
-int MostSeen(const Station& station, int spheres) {
+int MostSeen(const std::vector<View>& views, size_t spheres) {
   std::vector<int> seen(spheres);
-  for (const View& view : station.views)
+  for (const View& view : views)
     for (const SeenBall& ball : view.balls) ++seen[ball.sphere];
   return static_cast<int>(std::ranges::max_element(seen) - seen.begin());
 }
 
-std::vector<int> SeenInAll(const std::vector<View>& views, int spheres) {
+std::vector<int> SeenInAll(const std::vector<View>& views, size_t spheres) {
   std::vector<int> common;
-  for (int k = 0; k < spheres && common.size() < kBallsOfThePoint; ++k)
+  for (int k = 0; k < static_cast<int>(spheres) && common.size() < kBallsOfThePoint; ++k)
     if (std::ranges::all_of(views, [&](const View& view) { return Sees(view, k); })) common.push_back(k);
   return common;
 }
@@ -37,6 +37,17 @@ Vector3d Barycentre(const View& view, const std::vector<int>& of) {
   for (const SeenBall& ball : view.balls)
     if (std::ranges::find(of, ball.sphere) != of.end()) sum += ball.centre;
   return sum / static_cast<double>(of.size());
+}
+
+// The poses that see one point, with it alone; they leave `views`.
+std::vector<View> TakeOnePoint(std::vector<View>* views, size_t spheres) {
+  std::vector<View> taken = *views;
+  if (SeenInAll(taken, spheres).empty())
+    std::erase_if(taken, [most = MostSeen(taken, spheres)](const View& view) { return !Sees(view, most); });
+  const std::vector<int> common = SeenInAll(taken, spheres);
+  std::erase_if(*views, [&](const View& view) { return Sees(view, common[0]); });
+  for (View& view : taken) view.balls = {{0, Barycentre(view, common)}};
+  return taken;
 }
 
 struct Move {  // of the flange, and of the point as the scanner sees it
@@ -80,16 +91,14 @@ std::optional<Matrix3d> RotationOfTranslating(const RobotData& points) {
 }  // namespace
 
 RobotData VirtualPoints(const RobotData& data) {
-  const int spheres = static_cast<int>(data.spheres.size());
   RobotData points = data;
   points.spheres = {{"virtual point", Vector3d::Zero()}};
   points.check.clear();
-  for (Station& station : points.stations) {
-    std::erase_if(station.views, [](const View& view) { return view.balls.empty(); });
-    if (SeenInAll(station.views, spheres).empty())
-      std::erase_if(station.views, [most = MostSeen(station, spheres)](const View& view) { return !Sees(view, most); });
-    const std::vector<int> common = SeenInAll(station.views, spheres);
-    for (View& view : station.views) view.balls = {{0, Barycentre(view, common)}};
+  points.stations.clear();
+  for (const Station& station : data.stations) {
+    std::vector<View> left = station.views;
+    std::erase_if(left, [](const View& view) { return view.balls.empty(); });
+    while (!left.empty()) points.stations.push_back({station.name, TakeOnePoint(&left, std::ssize(data.spheres)), {}});
   }
   return points;
 }

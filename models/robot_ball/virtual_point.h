@@ -6,7 +6,8 @@
 namespace scancal {
 
 // The data with one ball a pose: the barycentre of the four balls, or fewer, that all poses of its station see, eq.
-// (5). Where no ball is seen in all poses, of those poses that see the station's most seen ball; the others go.
+// (5). Where no ball is seen in all poses, the poses that see the most seen ball have a point, and so on with the
+// others: the station becomes several of its name.
 RobotData VirtualPoints(const RobotData& data);
 
 // flange_from_scanner with nominal links, from the virtual points P_j. Poses of one orientation (within 1e-4 rad) at a

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 #include <Eigen/QR>
-#include "tests/models/robot_scene.h"
+#include "models/robot_ball/simulate.h"
+#include "solver/random.h"
 
 namespace scancal {
 namespace {
@@ -18,15 +19,16 @@ struct Scene {
 // Balls of the artifact seen from somewhere with noise; spread: whether it differs by ball and direction.
 Scene Seen(int balls, double noise, bool spread, uint64_t seed) {
   Scene scene{Matrix3Xd(3, balls), Matrix3Xd(3, balls), {}};
+  const std::vector<RobotBall::Sphere> spheres = PublishedArtifact();
   Random random(seed, 0);
   for (int i = 0; i < balls; ++i) {
-    scene.on_artifact.col(i) = EightSpheres()[i].centre;
+    scene.on_artifact.col(i) = spheres[i].centre;
     Matrix3d S = Matrix3d::Identity();
     if (spread)
       for (double& s : S.reshaped()) s += 0.4 * random.Normal();
     scene.spreads.push_back(S);
-    scene.measured.col(i) =
-        PoseOf({20, -40, 350, 0.5, -1.2, 0.7}) * scene.on_artifact.col(i) + S * NormalVector(noise, random);
+    scene.measured.col(i) = PoseOf({20, -40, 350, 0.5, -1.2, 0.7}) * scene.on_artifact.col(i) +
+                            noise * S * Eigen::Vector3d::NullaryExpr([&] { return random.Normal(); });
   }
   return scene;
 }
@@ -133,9 +135,7 @@ TEST(AdjustByAngles, RemovesErrorsOfAngles) {
 TEST(AdjustCentres, EveryPoseBecomesRigid) {
   RobotScene scene;
   scene.stations = 2;
-  scene.balls = 5;
-  scene.noise = 0.035;
-  RobotData data = Simulate(scene);
+  RobotData data = SimulateRobot(scene).data;
   data.stations[0].views[0].balls.resize(1);
   const Vector3d alone = data.stations[0].views[0].balls[0].centre;
   const RobotData adjusted = AdjustCentres(data);

@@ -64,8 +64,11 @@ TEST_F(RobotPointsTest, CentresAndTheirCovariance) {
     EXPECT_NEAR(many.spread.trace() / few.spread.trace(), 0.5, 0.1);
     const Eigen::Vector3d sight = few.centre.normalized(), across = sight.unitOrthogonal();
     const double ratio = sight.dot(Covariance(data, few) * sight) / across.dot(Covariance(data, few) * across);
-    if (diameter.empty()) EXPECT_GT(ratio, 2);
-    else EXPECT_LT(ratio, 0.7);
+    if (diameter.empty()) {
+      EXPECT_GT(ratio, 2);
+    } else {
+      EXPECT_LT(ratio, 0.7);
+    }
     EXPECT_EQ(declaration.files.size(), 34U);
     const RobotBall model = *DeclareModel(declaration);
     EXPECT_EQ(model.quantities()[RobotBall::kBall].role, Role::kEstimate);

@@ -24,7 +24,7 @@ RobotScene Noiseless() {
 double LargestResidual(const SimulatedRobot& robot, const RobotSetup& setup) {
   const RobotBall model(robot.data.links, robot.data.spheres);
   std::vector<double> q(model.quantities().size());
-  Eigen::Map<Eigen::Matrix<double, 6, 1>>(&q[RobotBall::kHandEye]) = NumbersOf(setup.flange_from_scanner);
+  Eigen::VectorXd::Map(&q[RobotBall::kHandEye], 6) = NumbersOf(setup.flange_from_scanner);
   double* number = &q[RobotBall::kLinks];
   for (const Link& error : setup.link_errors)
     for (const double x : {error.theta, error.d, error.a, error.alpha, error.beta}) *number++ = x;

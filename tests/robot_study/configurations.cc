@@ -1,5 +1,6 @@
 #include "tests/robot_study/configurations.h"
 #include <glog/logging.h>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include "models/parts/sphere.h"
@@ -42,6 +43,12 @@ double Radius(const RobotData& data, const RobotSetup& setup, uint64_t seed) {
 }
 
 }  // namespace
+
+double Reconstruction::Error(double share) const {
+  Eigen::VectorXd errors = (radius.array() - kBallRadius).abs();
+  std::sort(errors.begin(), errors.end());
+  return errors[static_cast<Eigen::Index>(share * static_cast<double>(errors.size() - 1))];
+}
 
 std::vector<Reconstruction> StudyConfigurations(const RobotScene& scene, size_t sets, int threads) {
   using enum PoseConfiguration;

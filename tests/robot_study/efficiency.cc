@@ -21,7 +21,7 @@ constexpr double kNormal95 = 1.959964;
 // The estimated quantities of the system at this setup.
 VectorXd Estimated(const Quantities& quantities, const RobotSetup& setup) {
   std::vector<double> values(quantities.size());
-  Eigen::Map<Eigen::Matrix<double, 6, 1>>(&values[RobotBall::kHandEye]) = NumbersOf(setup.flange_from_scanner);
+  VectorXd::Map(&values[RobotBall::kHandEye], 6) = NumbersOf(setup.flange_from_scanner);
   double* number = &values[RobotBall::kLinks];
   for (const Link& error : setup.link_errors)
     for (const double x : {error.theta, error.d, error.a, error.alpha, error.beta}) *number++ = x;
@@ -51,12 +51,21 @@ Truth TruthOf(const SimulatedRobot& robot) {
   return truth;
 }
 
-VectorXd BoundAt(const Truth& truth, const RobotBall& model) {
+// Covariance of the estimated quantities of the system.
+Eigen::MatrixXd BoundAt(const Truth& truth, const RobotBall& model) {
   Problem problem = MakeProblem<RobotBall>(std::make_shared<const RobotBall>(model), truth.stations);
   Estimate at = NominalStart(problem);
   at.system = Estimated(model.quantities(), truth.setup);
   Weigh(&problem, at);
-  return InverseInformation(Linearize(problem, at, Storey::kViews)).diagonal().cwiseSqrt();
+  return InverseInformation(Linearize(problem, at, Storey::kViews));
+}
+
+// Of the mean of n estimated standard deviations, each relative to its true one, from so many runs: those of normal
+// numbers with correlation rho have the correlation rho^2.
+double ErrorOfMeanRatio(const Eigen::MatrixXd& covariance, double runs) {
+  const VectorXd sigma = covariance.diagonal().cwiseSqrt();
+  const double squares = covariance.cwiseQuotient(sigma * sigma.transpose()).squaredNorm();
+  return std::sqrt(squares / (2 * runs)) / static_cast<double>(sigma.size());
 }
 
 struct Try {
@@ -86,7 +95,8 @@ Efficiency StudyEfficiency(const RobotScene& scene, Noise noise, size_t runs, in
   Efficiency efficiency;
   for (const Quantity& quantity : exactly_known.quantities())
     if (quantity.scope == Scope::kSystem && quantity.role == Role::kEstimate) efficiency.names.push_back(quantity.name);
-  efficiency.bound = BoundAt(truth, exactly_known);
+  const Eigen::MatrixXd bound = BoundAt(truth, exactly_known);
+  efficiency.bound = bound.diagonal().cwiseSqrt();
   std::vector<Try> tries(runs);
   InParallel(runs, threads, [&](size_t run) {
     RobotScene noisy = scene;
@@ -107,6 +117,7 @@ Efficiency StudyEfficiency(const RobotScene& scene, Noise noise, size_t runs, in
   CHECK_GT(efficiency.runs, 0);
   const auto n = static_cast<double>(efficiency.runs);
   efficiency.ratio = (squares / n).cwiseSqrt().cwiseQuotient(efficiency.bound);
+  efficiency.u_of_ratio = ErrorOfMeanRatio(bound, n);
   efficiency.coverage = held / n;
   efficiency.width = widths.cwiseQuotient(efficiency.bound) / (n * kNormal95);
   return efficiency;

@@ -13,10 +13,11 @@ struct Efficiency {  // one entry an estimated parameter of the system
   Eigen::VectorXd ratio;  // rms error over the runs / bound
   Eigen::VectorXd coverage;  // share of the runs whose value +- U holds the truth
   Eigen::VectorXd width;     // mean of U / (1.96 bound)
+  double u_of_ratio = 0;     // standard error of ratio.mean(), by the correlations at the bound
   size_t runs = 0, failed = 0;
 };
 
-// The scene with other noise in every run. The artifact's own u is left out of the data (see the rows of main.cc).
+// The scene with other noise in every run. The bound knows the artifact exactly.
 Efficiency StudyEfficiency(const RobotScene& scene, Noise noise, size_t runs, int threads);
 
 }  // namespace scancal::robot_study
