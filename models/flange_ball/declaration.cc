@@ -101,6 +101,7 @@ Result<FlangeBallDeclaration> DeclareFlangeBall(const Dataset& dataset) {
   FlangeBallDeclaration result;
   result.dataset = dataset;
   YamlMap top = dataset.yaml;
+  top.Map("robot");  // required
   result.model = FlangeBall(ReadLinks(top, dataset.units));
   FlangeBall& model = result.model;
   result.format.units = dataset.units;

@@ -78,7 +78,7 @@ TEST(FlangeBallTest, ItsSizeIsTheSpacingsAlone) {
 
 TEST(FlangeBallTest, WhatNoToolTellsIsRefusedByName) {
   const FlangeBallScene scene = MakeScene({.seat = 0.3});
-  for (const int k : {FlangeBall::kLinks + 1, kTheta7, kTheta7 + 1, kTheta7 + 2, kTheta7 + 3}) {
+  for (const int k : {0 + FlangeBall::kLinks, FlangeBall::kLinks + 1, kTheta7, kTheta7 + 1, kTheta7 + 2, kTheta7 + 3}) {
     FlangeBall model = ModelOf(scene);
     model.quantity(k).role = Role::kEstimate;
     EXPECT_THAT(Refusal(model, scene), AllOf(HasSubstr(model.quantities()[k].name), HasSubstr("not determined")));
