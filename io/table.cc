@@ -13,8 +13,9 @@ namespace scancal {
 
 class TableReader {
  public:
-  TableReader(const std::vector<TableColumn>& columns, const Units& units, TextLines text)
-      : wanted_(columns), units_(units), text_(std::move(text)) {
+  TableReader(const std::vector<TableColumn>& columns, const Units& units, const std::vector<std::string>& header,
+              TextLines text)
+      : wanted_(columns), units_(units), text_(std::move(text)), header_(header) {
     table_.name_ = text_.name();
   }
 
@@ -51,14 +52,17 @@ class TableReader {
   }
 
   Result<void> ReadHeader() {
-    SCANCAL_ASSIGN_OR_RETURN(const bool found, NextLine());
-    if (!found) return Error{table_.name_ + ": the file is empty, expected a header line and lines of data"};
-    for (CsvField& field : SplitCells(line_)) header_.push_back(std::move(field.text));
+    const bool declared = !header_.empty();
+    if (!declared) {
+      SCANCAL_ASSIGN_OR_RETURN(const bool found, NextLine());
+      if (!found) return Error{table_.name_ + ": the file is empty, expected a header line and lines of data"};
+      for (CsvField& field : SplitCells(line_)) header_.push_back(std::move(field.text));
+    }
     ScanFormat format;
     format.units = units_;
     for (const TableColumn& column : wanted_)
       format.columns.push_back({column.name, column.dimension, column.required});
-    const auto chosen = ChooseColumns(format, header_, Place());
+    const auto chosen = ChooseColumns(format, header_, declared ? table_.name_ : Place());
     if (!chosen.ok()) return Error{chosen.error().message + WrongSeparator(line_)};
     columns_.resize(header_.size());
     for (const ChosenColumn& column : *chosen) {
@@ -141,9 +145,9 @@ class TableReader {
 };
 
 Result<Table> Table::Read(const std::filesystem::path& path, const std::vector<TableColumn>& columns,
-                          const Units& units) {
+                          const Units& units, const std::vector<std::string>& header) {
   SCANCAL_ASSIGN_OR_RETURN(TextLines text, TextLines::Open(path));
-  return TableReader(columns, units, std::move(text)).Run();
+  return TableReader(columns, units, header, std::move(text)).Run();
 }
 
 std::string Table::Place(size_t row) const { return name_ + ":" + std::to_string(lines_[row]); }

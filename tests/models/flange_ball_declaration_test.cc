@@ -39,9 +39,11 @@ class FlangeBallDeclarationTest : public ::testing::Test {
     return declaration.ok() ? "" : declaration.error().message;
   }
   std::string ErrorOfTable(const std::string& contents, const std::vector<std::string>& columns = {"q1", "q2"}) {
-    folder_.Write("table.csv", contents);
-    const auto joints = ReadJoints(folder_.path() / "table.csv", {columns, Units()}, 2);
-    return joints.ok() ? "" : joints.error().message;
+    auto declaration = *Declare();
+    declaration.columns = columns;
+    const auto table = folder_.Write("table.csv", contents);
+    const auto tool = ReadTool({"tool", {table, table}}, declaration);
+    return tool.ok() ? "" : tool.error().message;
   }
 
   TemporaryFolder folder_;
@@ -81,14 +83,18 @@ TEST_F(FlangeBallDeclarationTest, WithoutAnyInfluenceTheSeatIsEstimated) {
 TEST_F(FlangeBallDeclarationTest, FilesWithAHeaderAndWithout) {
   auto declaration = Declare();
   ASSERT_TRUE(declaration.ok()) << declaration.error().message;
-  auto joints = ReadJoints(folder_.path() / "a.csv", declaration->format, 2);
-  ASSERT_TRUE(joints.ok()) << joints.error().message;
-  EXPECT_THAT(*joints, ElementsAre(ElementsAre(10 * kDegree, 20 * kDegree), ElementsAre(30 * kDegree, -40 * kDegree)));
-  declaration->format.columns.clear();
-  joints = ReadJoints(folder_.path() / "b.csv", declaration->format, 2);
-  ASSERT_TRUE(joints.ok()) << joints.error().message;
-  EXPECT_THAT((*joints)[2], ElementsAre(3, 10 * kDegree));
-  EXPECT_THAT(ReadTool(declaration->targets[0], *declaration).error().message, HasSubstr("expected also 'q1'"));
+  const auto a = folder_.path() / "a.csv", b = folder_.path() / "b.csv";
+  auto tool = ReadTool({"tool", {a, a}}, *declaration);
+  ASSERT_TRUE(tool.ok()) << tool.error().message;
+  ASSERT_EQ(tool->views.size(), 4U);
+  EXPECT_THAT(tool->views[1].joints, ElementsAre(30 * kDegree, -40 * kDegree));
+  EXPECT_EQ(tool->views[1].socket, 0);
+  EXPECT_EQ(tool->views[2].socket, 1);
+  declaration->columns.clear();
+  tool = ReadTool({"tool", {b, b}}, *declaration);
+  ASSERT_TRUE(tool.ok()) << tool.error().message;
+  EXPECT_THAT(tool->views[2].joints, ElementsAre(3, 10 * kDegree));
+  EXPECT_THAT(ReadTool({"tool", {b, a}}, *declaration).error().message, HasSubstr("declare columns: [q1, q2"));
 }
 
 TEST_F(FlangeBallDeclarationTest, WrongDeclarationsAreTold) {
@@ -113,14 +119,16 @@ TEST_F(FlangeBallDeclarationTest, WrongDeclarationsAreTold) {
 }
 
 TEST_F(FlangeBallDeclarationTest, WrongTablesAreTold) {
-  EXPECT_THAT(ErrorOfTable("10,20\n30,x\n"), HasSubstr("table.csv:2:4: q2: found \"x\", expected a finite number"));
-  EXPECT_THAT(ErrorOfTable("10,20\n30\n"), HasSubstr("table.csv:2: found 1 cells, expected 2"));
+  EXPECT_THAT(ErrorOfTable("10,20\n30,x\n"), HasSubstr("table.csv:2:4: q2: found \"x\", expected a number"));
+  EXPECT_THAT(ErrorOfTable("10,20\n30\n"), HasSubstr("table.csv:2: found 1 cell, expected 2"));
   EXPECT_THAT(ErrorOfTable("10,20\n30,\n"), HasSubstr("table.csv:2:4: q2"));
-  EXPECT_THAT(ErrorOfTable("10,20\n"), HasSubstr("found 1 poses, expected two or more"));
+  EXPECT_THAT(ErrorOfTable("10,20\n"), HasSubstr("found 1 pose, expected two or more"));
   EXPECT_THAT(ErrorOfTable("10,20\n30,1e9\n"), AllOf(HasSubstr("table.csv:2:4: q2"), HasSubstr("are these degrees?")));
   EXPECT_THAT(ErrorOfTable("1.5,2\n-1,0.3\n"), AllOf(HasSubstr("expected a robot that moves"), HasSubstr("radians")));
   EXPECT_THAT(ErrorOfTable("10,20\n30,40\n", {}), HasSubstr("if the file has no header, declare columns: [q1, q2, "));
   EXPECT_THAT(ErrorOfTable("10;20\n30;40\n"), HasSubstr("semicolons"));
+  EXPECT_THAT(ErrorOfTable("10,20,5\n30,40,6\n", {"q1", "q2", "q3"}),
+              HasSubstr("found the column q3, expected 2 joints"));
   EXPECT_EQ(ErrorOfTable("10,20\n30,40\n"), "");
 }
 
