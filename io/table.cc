@@ -15,7 +15,7 @@ class TableReader {
  public:
   TableReader(const std::vector<TableColumn>& columns, const Units& units, const std::vector<std::string>& header,
               TextLines text)
-      : wanted_(columns), units_(units), text_(std::move(text)), header_(header) {
+      : wanted_(columns), units_(units), text_(std::move(text)), header_(header), nameless_(!header.empty()) {
     table_.name_ = text_.name();
   }
 
@@ -26,7 +26,9 @@ class TableReader {
       if (!more) break;
       SCANCAL_RETURN_IF_ERROR(ReadRow());
     }
-    if (table_.rows() == 0) return Error{table_.name_ + ": found no line below the header, expected lines of data"};
+    if (table_.rows() == 0)
+      return Error{table_.name_ + ": found no line" + (nameless_ ? "" : " below the header") +
+                   ", expected lines of data"};
     return std::move(table_);
   }
 
@@ -52,8 +54,7 @@ class TableReader {
   }
 
   Result<void> ReadHeader() {
-    const bool declared = !header_.empty();
-    if (!declared) {
+    if (!nameless_) {
       SCANCAL_ASSIGN_OR_RETURN(const bool found, NextLine());
       if (!found) return Error{table_.name_ + ": the file is empty, expected a header line and lines of data"};
       for (CsvField& field : SplitCells(line_)) header_.push_back(std::move(field.text));
@@ -62,7 +63,7 @@ class TableReader {
     format.units = units_;
     for (const TableColumn& column : wanted_)
       format.columns.push_back({column.name, column.dimension, column.required});
-    const auto chosen = ChooseColumns(format, header_, declared ? table_.name_ : Place());
+    const auto chosen = ChooseColumns(format, header_, nameless_ ? table_.name_ : Place());
     if (!chosen.ok()) return Error{chosen.error().message + WrongSeparator(line_)};
     columns_.resize(header_.size());
     for (const ChosenColumn& column : *chosen) {
@@ -140,6 +141,7 @@ class TableReader {
   std::string_view line_;
   uint32_t line_number_ = 0;
   std::vector<std::string> header_;
+  bool nameless_;                    // the file has no header
   std::vector<FileColumn> columns_;  // of the file
   Table table_;
 };
