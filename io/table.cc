@@ -13,8 +13,9 @@ namespace scancal {
 
 class TableReader {
  public:
-  TableReader(const std::vector<TableColumn>& columns, const Units& units, TextLines text)
-      : wanted_(columns), units_(units), text_(std::move(text)) {
+  TableReader(const std::vector<TableColumn>& columns, const Units& units, const std::vector<std::string>& header,
+              TextLines text)
+      : wanted_(columns), units_(units), text_(std::move(text)), header_(header), nameless_(!header.empty()) {
     table_.name_ = text_.name();
   }
 
@@ -25,7 +26,9 @@ class TableReader {
       if (!more) break;
       SCANCAL_RETURN_IF_ERROR(ReadRow());
     }
-    if (table_.rows() == 0) return Error{table_.name_ + ": found no line below the header, expected lines of data"};
+    if (table_.rows() == 0)
+      return Error{table_.name_ + ": found no line" + (nameless_ ? "" : " below the header") +
+                   ", expected lines of data"};
     return std::move(table_);
   }
 
@@ -51,14 +54,16 @@ class TableReader {
   }
 
   Result<void> ReadHeader() {
-    SCANCAL_ASSIGN_OR_RETURN(const bool found, NextLine());
-    if (!found) return Error{table_.name_ + ": the file is empty, expected a header line and lines of data"};
-    for (CsvField& field : SplitCells(line_)) header_.push_back(std::move(field.text));
+    if (!nameless_) {
+      SCANCAL_ASSIGN_OR_RETURN(const bool found, NextLine());
+      if (!found) return Error{table_.name_ + ": the file is empty, expected a header line and lines of data"};
+      for (CsvField& field : SplitCells(line_)) header_.push_back(std::move(field.text));
+    }
     ScanFormat format;
     format.units = units_;
     for (const TableColumn& column : wanted_)
       format.columns.push_back({column.name, column.dimension, column.required});
-    const auto chosen = ChooseColumns(format, header_, Place());
+    const auto chosen = ChooseColumns(format, header_, nameless_ ? table_.name_ : Place());
     if (!chosen.ok()) return Error{chosen.error().message + WrongSeparator(line_)};
     columns_.resize(header_.size());
     for (const ChosenColumn& column : *chosen) {
@@ -136,14 +141,15 @@ class TableReader {
   std::string_view line_;
   uint32_t line_number_ = 0;
   std::vector<std::string> header_;
+  bool nameless_;                    // the file has no header
   std::vector<FileColumn> columns_;  // of the file
   Table table_;
 };
 
 Result<Table> Table::Read(const std::filesystem::path& path, const std::vector<TableColumn>& columns,
-                          const Units& units) {
+                          const Units& units, const std::vector<std::string>& header) {
   SCANCAL_ASSIGN_OR_RETURN(TextLines text, TextLines::Open(path));
-  return TableReader(columns, units, std::move(text)).Run();
+  return TableReader(columns, units, header, std::move(text)).Run();
 }
 
 std::string Table::Place(size_t row) const { return name_ + ":" + std::to_string(lines_[row]); }

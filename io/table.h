@@ -25,8 +25,9 @@ struct TableColumn {
 // points by the million there is ScanReader.
 class Table {
  public:
+  // header: names of the columns of a file that has no header.
   static Result<Table> Read(const std::filesystem::path& path, const std::vector<TableColumn>& columns,
-                            const Units& units);
+                            const Units& units, const std::vector<std::string>& header = {});
   size_t rows() const { return lines_.size(); }  // one or more
   bool Has(std::string_view column) const { return Find(column) != nullptr; }
   const std::string& Text(std::string_view column, size_t row) const { return At(column).texts[row]; }

@@ -2,6 +2,7 @@
 #include <set>
 #include "io/message.h"
 #include "models/parts/declared_links.h"
+#include "models/parts/joint_columns.h"
 
 namespace scancal {
 namespace {
@@ -88,6 +89,19 @@ ToolDeclaration ReadDeclaration(YamlMap yaml, const std::filesystem::path& folde
   return tool;
 }
 
+Result<Table> ReadTable(const std::filesystem::path& file, const FlangeBallDeclaration& declaration, size_t joints) {
+  auto table = Table::Read(file, JointColumns(joints), declaration.dataset.units, declaration.columns);
+  if (!table.ok()) {
+    const bool nameless =
+        declaration.columns.empty() && table.error().message.find("expected also") != std::string::npos;
+    return Error{table.error().message +
+                 (nameless ? "; if the file has no header, declare columns: [q1, q2, ...]" : "")};
+  }
+  if (table->rows() < 2) return Error{table->name() + ": found 1 pose, expected two or more"};
+  SCANCAL_RETURN_IF_ERROR(CheckJoints(*table, joints));
+  return table;
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> FlangeBallDeclaration::Files() const {
@@ -101,10 +115,10 @@ Result<FlangeBallDeclaration> DeclareFlangeBall(const Dataset& dataset) {
   FlangeBallDeclaration result;
   result.dataset = dataset;
   YamlMap top = dataset.yaml;
+  top.Map("robot");  // required
   result.model = FlangeBall(ReadLinks(top, dataset.units));
   FlangeBall& model = result.model;
-  result.format.units = dataset.units;
-  if (top.Has("columns")) result.format.columns = top.Texts("columns");
+  if (top.Has("columns")) result.columns = top.Texts("columns");
   std::set<std::string> names;
   const std::filesystem::path folder = dataset.file.parent_path();
   for (const YamlMap& tool : top.Maps("targets")) result.targets.push_back(ReadDeclaration(tool, folder, &names));
@@ -124,10 +138,10 @@ Result<FlangeBallDeclaration> DeclareFlangeBall(const Dataset& dataset) {
 Result<FlangeBall::Target> ReadTool(const ToolDeclaration& tool, const FlangeBallDeclaration& declaration) {
   FlangeBall::Target target;
   target.name = tool.name;
+  const size_t joints = declaration.model.links().size();
   for (const int socket : {0, 1}) {
-    SCANCAL_ASSIGN_OR_RETURN(std::vector<std::vector<double>> poses,
-                             ReadJoints(tool.sockets[socket], declaration.format, declaration.model.links().size()));
-    for (std::vector<double>& joints : poses) target.views.push_back({std::move(joints), socket});
+    SCANCAL_ASSIGN_OR_RETURN(const Table table, ReadTable(tool.sockets[socket], declaration, joints));
+    for (size_t row = 0; row < table.rows(); ++row) target.views.push_back({JointsOf(table, row, joints), socket});
   }
   return target;
 }

@@ -6,7 +6,6 @@
 #include <vector>
 #include "io/dataset.h"
 #include "models/flange_ball.h"
-#include "models/flange_ball/joint_table.h"
 
 namespace scancal {
 
@@ -17,8 +16,8 @@ struct ToolDeclaration {  // one location of the tool
 
 struct FlangeBallDeclaration {
   Dataset dataset;
-  FlangeBall model{{}};  // roles, values and u as declared
-  JointFormat format;
+  FlangeBall model{{}};                         // roles, values and u as declared
+  std::vector<std::string> columns;             // of files without a header; empty: files have one
   std::vector<ToolDeclaration> targets, check;  // check: not used in the calibration
   std::vector<std::filesystem::path> Files() const;
 };
@@ -33,7 +32,7 @@ struct FlangeBallDeclaration {
 //     influences: {seat: estimate, joints: 0.01}
 Result<FlangeBallDeclaration> DeclareFlangeBall(const Dataset& dataset);
 
-// The joint angles of its files.
+// The joint angles of its files, two poses or more in each.
 Result<FlangeBall::Target> ReadTool(const ToolDeclaration& tool, const FlangeBallDeclaration& declaration);
 
 }  // namespace scancal

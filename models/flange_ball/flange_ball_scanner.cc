@@ -1,6 +1,7 @@
 #include "models/flange_ball/flange_ball_scanner.h"
 #include <fmt/format.h>
 #include <chrono>
+#include <cmath>
 #include "io/message.h"
 #include "io/progress.h"
 
@@ -29,6 +30,12 @@ double WorstSpacing(const RobotWithBall& robot, const std::vector<FlangeBall::Ta
   return worst;
 }
 
+std::map<std::string, std::vector<double>> GeometryOf(const RobotWithBall& robot, const FlangeBall::Target& tool) {
+  const Seating seating = SeatingOf(robot, tool);
+  const Eigen::Vector3d socket = robot.Socket(tool, 0);
+  return {{"spread", {seating.spread}}, {"spacing", {seating.spacing}}, {"socket", {socket[0], socket[1], socket[2]}}};
+}
+
 Result<std::vector<FlangeBall::Target>> ReadTools(const std::vector<ToolDeclaration>& tools,
                                                   const FlangeBallDeclaration& declaration) {
   std::vector<FlangeBall::Target> targets;
@@ -50,12 +57,13 @@ std::string FlangeBallScanner::Describe() const {
       "{}: flange-ball, {} joints, lengths in {}, angles in {}; sockets {:g} mm apart; {} locations of the tool with "
       "{} poses, {} more with {} poses held out.",
       dataset.name.empty() ? dataset.file.parent_path().filename().string() : dataset.name,
-      declaration_.model.links().size(), dataset.units.length, dataset.units.angle,
-      declaration_.model.quantities()[FlangeBall::kSpacing].value, targets_.size(), Poses(targets_), check_.size(),
-      Poses(check_));
+      declaration_.model.links().size(), dataset.units.length, dataset.units.angle, Spacing(), targets_.size(),
+      Poses(targets_), check_.size(), Poses(check_));
 }
 
 std::vector<std::filesystem::path> FlangeBallScanner::Files() const { return declaration_.Files(); }
+
+double FlangeBallScanner::Spacing() const { return declaration_.model.quantities()[FlangeBall::kSpacing].value; }
 
 Result<Solution> FlangeBallScanner::Fit(const RefineChoice& choice) const {
   Solution solution = FitFlangeBall(declaration_.model, targets_, choice.max_iterations);
@@ -65,6 +73,8 @@ Result<Solution> FlangeBallScanner::Fit(const RefineChoice& choice) const {
 }
 
 Result<Calibration> FlangeBallScanner::Calibrate(const RefineChoice& choice) const {
+  if (!choice.residual.empty() && choice.residual != "depth")
+    return Error{"residual: found \"" + choice.residual + "\", but a ball in a socket has no other than its position"};
   if (choice.equal_weights && choice.monte_carlo.trials > 0)
     return Error{"montecarlo: found equal weights, expected estimated ones: only they say how large all noise is"};
   const auto began = std::chrono::steady_clock::now();
@@ -78,20 +88,21 @@ Result<Calibration> FlangeBallScanner::Calibrate(const RefineChoice& choice) con
   result.name = declaration_.dataset.name;
   result.residual = "ball in socket";
   result.seconds = seconds.count();
-  const RobotWithBall robot = RobotOf(declaration_.model.links(), solution);
-  for (size_t t = 0; t < targets_.size(); ++t) {
-    const Seating seating = SeatingOf(robot, targets_[t]);
-    const Eigen::Vector3d socket = robot.Socket(targets_[t], 0);
-    result.targets[t].geometry = {
-        {"spread", {seating.spread}}, {"spacing", {seating.spacing}}, {"socket", {socket[0], socket[1], socket[2]}}};
+  const RobotWithBall nominal = FitBall(declaration_.model.links(), targets_),
+                      robot = RobotOf(declaration_.model.links(), solution);
+  for (size_t t = 0; t < targets_.size(); ++t) result.targets[t].geometry = GeometryOf(robot, targets_[t]);
+  for (const FlangeBall::Target& tool : check_) {
+    result.check.names.push_back("spacing at " + tool.name);
+    result.check.before.push_back(SeatingOf(nominal, tool).spacing - Spacing());
+    result.check.after.push_back(SeatingOf(robot, tool).spacing - Spacing());
   }
   JudgeBall(robot, &result);
+  if (!check_.empty()) JudgeHeldOut(MeanSpread(robot, targets_), MeanSpread(robot, check_), &result);
   return result;
 }
 
 Result<Comparison> FlangeBallScanner::Compare() const {
   SCANCAL_ASSIGN_OR_RETURN(const Solution solution, Fit({}));
-  const double spacing = declaration_.model.quantities()[FlangeBall::kSpacing].value;
   Comparison comparison;
   comparison.columns = {{"calibrated with/mm"}, {"held out/mm"}, {"worst spacing/mm"}, {"worst, held out/mm"}};
   for (const auto* tools : {&targets_, &check_})
@@ -100,10 +111,10 @@ Result<Comparison> FlangeBallScanner::Compare() const {
     ComparisonRow& row = comparison.rows.emplace_back();
     row.method = method;
     row.note = note;
-    row.cells = {{MeanSpread(robot, targets_)}, {}, {WorstSpacing(robot, targets_, spacing)}, {}};
+    row.cells = {{MeanSpread(robot, targets_)}, {}, {WorstSpacing(robot, targets_, Spacing())}, {}};
     if (!check_.empty()) {
       row.cells[1].value = MeanSpread(robot, check_);
-      row.cells[3].value = WorstSpacing(robot, check_, spacing);
+      row.cells[3].value = WorstSpacing(robot, check_, Spacing());
     }
     for (const auto* tools : {&targets_, &check_})
       for (const FlangeBall::Target& tool : *tools) row.cells.push_back({SeatingOf(robot, tool).spread});
@@ -145,6 +156,15 @@ void JudgeBall(const RobotWithBall& robot, Calibration* calibration) {
       "the ball lies {:.2g} mm from the axis of the last joint: {} and ball_z are hardly determined one by one, only "
       "where the ball is; hold theta_{} and alpha_{}, or give priors",
       from_axis, free, before, before));
+}
+
+void JudgeHeldOut(double spread, double held_out, Calibration* calibration) {
+  constexpr double kMuchMore = 1.5;
+  if (held_out < kMuchMore * spread) return;
+  calibration->warnings.push_back(fmt::format(
+      "at the locations held out the ball strays by {:.3g} mm on average, {:.2g} times as far as where the robot was "
+      "calibrated: the model lacks something there, and u does not hold it; calibrate with more locations of the tool",
+      held_out, held_out / spread));
 }
 
 Result<std::unique_ptr<Scanner>> LoadFlangeBall(const Dataset& dataset) {

@@ -24,6 +24,7 @@ class FlangeBallScanner final : public Scanner {
   Result<void> WriteSurface(const std::filesystem::path& file) const override;  // an Error: there is no search
 
  private:
+  double Spacing() const;  // as declared, mm
   Result<Solution> Fit(const RefineChoice& choice) const;
 
   FlangeBallDeclaration declaration_;
@@ -35,6 +36,9 @@ Result<void> CheckDetermined(const Solution& solution);
 
 // Warns of a ball so near to the last joint's axis that the link before is known to a few mm only.
 void JudgeBall(const RobotWithBall& robot, Calibration* calibration);
+
+// Warns of a ball that strays much farther where the tool was held out (mean spreads, mm).
+void JudgeHeldOut(double spread, double held_out, Calibration* calibration);
 
 Result<std::unique_ptr<Scanner>> LoadFlangeBall(const Dataset& dataset);
 Result<std::unique_ptr<Scanner>> ReloadFlangeBall(const Dataset& dataset, const Json& data, const std::string& file);

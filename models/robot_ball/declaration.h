@@ -6,15 +6,10 @@
 #include <vector>
 #include "io/dataset.h"
 #include "io/result.h"
+#include "models/parts/declared_links.h"
 #include "models/robot_ball/measured.h"
 
 namespace scancal {
-
-// parameters: links: {estimate: 0, u_length: 0.5, u_angle: 0.1}
-struct LinkSetting {
-  bool hold = false;                 // all of them; what is named singly stands
-  double u_length = 0, u_angle = 0;  // of the prior of each that is estimated, mm, rad; 0: none
-};
 
 struct RobotDeclaration {
   Dataset dataset;

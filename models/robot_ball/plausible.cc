@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 #include "io/message.h"
+#include "models/parts/declared_links.h"
 
 namespace scancal {
 namespace {

@@ -13,7 +13,4 @@ namespace scancal {
 // poses with less than three balls. where: the table of the poses, for messages.
 Result<void> CheckPlausible(const RobotData& data, const std::string& where, std::vector<std::string>* warnings);
 
-// Reach of any robot, mm: outside of it the unit is another.
-inline constexpr double kLeastReach_mm = 20, kLargestReach_mm = 20'000;
-
 }  // namespace scancal

@@ -2,23 +2,18 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <optional>
+#include "models/parts/joint_columns.h"
 
 namespace scancal {
 namespace {
 
-constexpr double kTurn_rad = 2 * std::numbers::pi;
 constexpr double kNormTolerance = 1e-3;  // a quaternion written with four digits
 const std::vector<std::string> kQuaternion = {"qx", "qy", "qz", "qw"};
 
-std::string Joint(size_t k) { return "q" + std::to_string(k + 1); }
-
 std::vector<TableColumn> Columns(size_t joints) {
   std::vector<TableColumn> columns = {{"station"}, {"pose"}};
-  for (size_t k = 0; k < joints; ++k) columns.push_back({Joint(k), Cells::kNumber, Dimension::kAngle});
   if (joints > 0) {
-    columns.push_back({Joint(joints), Cells::kNumberOrNothing, Dimension::kAngle, false});  // one too many
+    for (const TableColumn& column : JointColumns(joints)) columns.push_back(column);
     return columns;
   }
   for (const char* axis : {"x", "y", "z"}) columns.push_back({axis, Cells::kNumber, Dimension::kLength});
@@ -32,33 +27,7 @@ Result<Table> ReadTable(const std::filesystem::path& path, size_t joints, const 
     return Error{table.error().message + (joints > 0 ? "; robot: links declares " + std::to_string(joints) +
                                                            " joints, without it the poses are those of the flange"
                                                      : "; joint angles need robot: links in dataset.yaml")};
-  if (table.ok() && joints > 0 && table->Has(Joint(joints)))
-    return Error{table->name() + ": found the column " + Joint(joints) + ", expected " + std::to_string(joints) +
-                 " joints, one a row of robot: links"};
   return table;
-}
-
-// Degrees declared as radians, or the other way round.
-Result<void> CheckJoints(const Table& table, size_t joints) {
-  double largest = 0;
-  for (size_t k = 0; k < joints; ++k) {
-    const std::vector<double>& angles = table.Numbers(Joint(k));
-    for (size_t row = 0; row < table.rows(); ++row) {
-      if (std::abs(angles[row]) > 2 * kTurn_rad)
-        return table.Wrong(row, Joint(k),
-                           fmt::format("that is {:.4g} rad, expected two turns at most; are these degrees? See units: "
-                                       "angle, or name the column {}_deg",
-                                       angles[row], Joint(k)));
-      largest = std::max(largest, std::abs(angles[row]));
-    }
-  }
-  constexpr double kDegree_rad = kTurn_rad / 360;
-  if (joints > 0 && largest <= kTurn_rad * kDegree_rad)
-    return Error{
-        fmt::format("{}: all joint angles lie within {:.3g} deg, expected a robot that moves; are these "
-                    "radians? See units: angle, or name the columns q1_rad ...",
-                    table.name(), largest / kDegree_rad)};
-  return {};
 }
 
 Result<Eigen::Isometry3d> FlangeOf(const Table& table, size_t row) {
@@ -77,14 +46,14 @@ Result<Eigen::Isometry3d> FlangeOf(const Table& table, size_t row) {
 
 Result<PoseTable> ReadPoses(const std::filesystem::path& path, const std::vector<Link>& links, const Units& units) {
   SCANCAL_ASSIGN_OR_RETURN(Table table, ReadTable(path, links.size(), units));
-  SCANCAL_RETURN_IF_ERROR(CheckJoints(table, links.size()));
+  if (!links.empty()) SCANCAL_RETURN_IF_ERROR(CheckJoints(table, links.size()));
   PoseTable poses;
   std::unordered_map<std::string, size_t> stations;
   for (size_t row = 0; row < table.rows(); ++row) {
     const std::string& name = table.Text("pose", row);
     RobotBall::View view;
     view.name = name;
-    for (size_t k = 0; k < links.size(); ++k) view.joints.push_back(table.Number(Joint(k), row));
+    view.joints = JointsOf(table, row, links.size());
     if (links.empty()) {
       SCANCAL_ASSIGN_OR_RETURN(view.base_from_flange, FlangeOf(table, row));
     }

@@ -31,6 +31,18 @@ class TableTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(TableTest, AFileWithoutAHeader) {
+  const auto read = [&](const std::string& text, const std::vector<std::string>& header) {
+    return Table::Read(folder_.Write("t.csv", text), {{"x", Cells::kNumber, Dimension::kLength}}, Units{}, header);
+  };
+  const auto table = read("# logged\n1,2\n3,4\n", {"other", "x_m"});
+  ASSERT_TRUE(table.ok()) << table.error().message;
+  EXPECT_THAT(table->Numbers("x"), ElementsAre(2000, 4000));
+  EXPECT_THAT(table->Wrong(0, "x", "so").message, EndsWith("t.csv:2:3: x: so"));
+  EXPECT_THAT(read("1,2\n", {"a", "b"}).error().message, HasSubstr("t.csv: found the columns a, b, expected also 'x'"));
+  EXPECT_THAT(read("", {"x"}).error().message, EndsWith("t.csv: found no line, expected lines of data"));
+}
+
 TEST_F(TableTest, NamedColumnsInAnyOrder) {
   const auto table = Read("x,other,ball\n1.5,?,A\n-2e1,,B\n");
   ASSERT_TRUE(table.ok()) << table.error().message;

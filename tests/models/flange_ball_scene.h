@@ -21,6 +21,7 @@ struct FlangeBallChoice {
   double seat = 0.1;          // noise, mm
   double joints = 0;          // noise, rad
   uint64_t seed = 1;
+  Eigen::Vector3d ball = {60, 30, 120};  // far from the last axis
 };
 
 // A Panda, as its maker draws it.
@@ -57,10 +58,9 @@ inline std::vector<double> Reach(const RobotWithBall& robot, std::vector<double>
   return joints;
 }
 
-// Link errors of some 0.5 mm and 5 mrad in what is estimated by default, the same for every seed; the ball far from the
-// last axis.
-inline RobotWithBall TrueRobot() {
-  RobotWithBall robot{NominalPanda(), {60, 30, 120}};
+// Link errors of some 0.5 mm and 5 mrad in what is estimated by default, the same for every seed.
+inline RobotWithBall TrueRobot(const Eigen::Vector3d& ball) {
+  RobotWithBall robot{NominalPanda(), ball};
   FlangeBall model(robot.links);
   Random random(7, 0);
   for (size_t k = 0; k < robot.links.size(); ++k) {
@@ -76,7 +76,7 @@ inline RobotWithBall TrueRobot() {
 
 // Without noise; the same for every seed.
 inline FlangeBallScene CleanScene(const FlangeBallChoice& choice) {
-  FlangeBallScene scene{TrueRobot(), NominalPanda(), {}};
+  FlangeBallScene scene{TrueRobot(choice.ball), NominalPanda(), {}};
   Random random(3, 0);
   for (int t = 0; t < choice.tools; ++t) {
     FlangeBall::Target& tool = scene.tools.emplace_back();
