@@ -5,6 +5,7 @@
 #include "apps/command.h"
 #include "apps/load.h"
 #include "io/json_file.h"
+#include "io/output_file.h"
 #include "report/calibration_json.h"
 #include "report/text.h"
 
@@ -17,13 +18,15 @@ constexpr int kFewestTrials = 100, kMostTrials = 10'000'000;
 
 Result<Calibration> Calibrated(const std::vector<std::string>& arguments, const RefineChoice& choice) {
   SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, LoadAndEcho(arguments));
+  const std::filesystem::path file = std::filesystem::path(FLAGS_out) / "calibration.json";
+  SCANCAL_RETURN_IF_ERROR(OutputFile::Create(file));  // told before the work, not after it
   SCANCAL_ASSIGN_OR_RETURN(Calibration calibration, scanner->Calibrate(choice));
   SCANCAL_ASSIGN_OR_RETURN(calibration.inputs, InputsOf(*scanner));
   calibration.command = CommandLine();
   calibration.version = SCANCAL_VERSION;
   Json json = ToJson(calibration);
   SCANCAL_ASSIGN_OR_RETURN(json["data"], scanner->Data());
-  SCANCAL_RETURN_IF_ERROR(WriteJson(std::filesystem::path(FLAGS_out) / "calibration.json", json));
+  SCANCAL_RETURN_IF_ERROR(WriteJson(file, json));
   return calibration;
 }
 

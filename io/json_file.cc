@@ -33,12 +33,19 @@ std::string FindUnwritable(const Json& json, const std::string& key) {
   return found;
 }
 
+// A damaged file may be one long string.
+std::string Short(const std::string& text) {
+  constexpr size_t kMost = 120;
+  return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
+}
+
 // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while ... - reason" -> "reason"
 std::string ReasonOf(const std::string& message) {
   for (const std::string_view before : {" - ", ": ", "] "}) {
-    if (const size_t at = message.find(before); at != std::string::npos) return message.substr(at + before.size());
+    if (const size_t at = message.find(before); at != std::string::npos)
+      return Short(message.substr(at + before.size()));
   }
-  return message;
+  return Short(message);
 }
 
 }  // namespace

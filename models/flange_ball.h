@@ -2,6 +2,7 @@
 #pragma once
 #include <ceres/rotation.h>
 #include <Eigen/Core>
+#include <cmath>
 #include <string>
 #include <vector>
 #include "models/parts/chain.h"
@@ -11,14 +12,18 @@ namespace scancal {
 
 // The ball rests in socket s (0 or 1) of a tool that lies somewhere in the base:
 //
-//     r = base_from_flange(q; links) ball - (socket + s spacing direction).
+//     r = Rz(-theta_1) (base_from_flange(q; links) ball - (socket + s spacing direction)) nominal spacing / spacing.
 //
 // A target is one location of the tool: socket_x, _y, _z, where its socket 0 holds the ball, is the target's own, and
 // so are direction_1 and _2, small turns of Target::direction about two axes across it. ball_x, _y, _z lies in the
-// flange's frame. spacing is what has a length: without it the ball would fit best into a robot of no size.
+// flange's frame. spacing is the one length that is known; its value must not be zero.
 //
-// Noise: seat moves the ball of one pose; joint_1 .. joint_n, errors of the joints of one pose, are common to nothing
-// else. Residuals are in the base: theta_1 and d_1 must be held, the tool takes them. Lengths mm, angles rad.
+// What no tool tells: theta_1 and d_1, which move all tools, the last link, which the ball takes, and how large all of
+// it is. Turned back by theta_1 and in units of the spacing the residual does not change with them at all. In plain
+// coordinates of the base what is left of it would seem to determine theta_1, and it would shrink with the robot: the
+// ball fits best into one of no size.
+//
+// Noise: seat moves the ball, joint_1 .. joint_n the joints of one pose. Lengths mm, angles rad.
 class FlangeBall {
  public:
   // Each the first of as many as its name has components; links: kLinkNumbers a link, behind them joint_1 .. joint_n.
@@ -57,21 +62,27 @@ class FlangeBall {
 
 template <class T>
 void FlangeBall::Residual(const Target& tool, const View& pose, const Seen<T>& q, T* r) const {
+  using std::cos, std::sin;
   std::vector<T> errors(q.q + kLinks, q.q + FirstOfJoints());
   for (size_t k = 0; k < links_.size(); ++k) errors[kLinkNumbers * k] += q[FirstOfJoints() + static_cast<int>(k)];
   ChainFrame<T> flange = MakeChainFrame<T>(Eigen::Isometry3d::Identity());
   MoveAlong(links_, pose.joints.data(), errors.data(), &flange);
-  T turn[3], along[3], direction[3];
+  T turn[3], along[3], direction[3], apart[3];
   for (int i = 0; i < 3; ++i) {
     turn[i] = q[kDirection] * tool.across[0][i] + q[kDirection + 1] * tool.across[1][i];
     direction[i] = T(tool.direction[i]);
   }
   ceres::AngleAxisRotatePoint(turn, direction, along);
   for (int i = 0; i < 3; ++i) {
-    r[i] = flange.p[i] + flange.x[i] * q[kBall] + flange.y[i] * q[kBall + 1] + flange.z[i] * q[kBall + 2] -
-           q[kSocket + i] - q(0, kSeat + i);
-    if (pose.socket == 1) r[i] -= along[i] * q[kSpacing];
+    apart[i] =
+        flange.p[i] + flange.x[i] * q[kBall] + flange.y[i] * q[kBall + 1] + flange.z[i] * q[kBall + 2] - q[kSocket + i];
+    if (pose.socket == 1) apart[i] -= along[i] * q[kSpacing];
   }
+  const T size = quantities_[kSpacing].value / q[kSpacing];
+  const T c = size * cos(q[kLinks]), s = size * sin(q[kLinks]);  // of theta_1
+  r[0] = c * apart[0] + s * apart[1] - q(0, kSeat);
+  r[1] = c * apart[1] - s * apart[0] - q(0, kSeat + 1);
+  r[2] = size * apart[2] - q(0, kSeat + 2);
 }
 
 }  // namespace scancal

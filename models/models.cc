@@ -1,11 +1,12 @@
 #include "models/models.h"
+#include "models/flange_ball/flange_ball_scanner.h"
 #include "models/robot_ball/robot_scanner.h"
 #include "models/turntable/turntable_scanner.h"
 
 namespace scancal {
 namespace {
 
-constexpr ScannerKind kKinds[] = {kTurntable, kRobotBall};
+constexpr ScannerKind kKinds[] = {kTurntable, kRobotBall, kFlangeBall};
 
 }  // namespace
 

@@ -8,6 +8,7 @@ namespace scancal {
 namespace {
 
 constexpr int kFormatVersion = 1;
+constexpr double kCoverage = 0.95;  // of every U
 
 // JSON has no infinity: what is not known is null.
 Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -78,6 +79,17 @@ Json MisfitsJson(const Calibration& calibration) {
                     {"p", Number(misfit.p)},
                     {"moves", ByParameter(calibration.estimated, misfit.moves)}});
   return list;
+}
+
+Json CorrelationJson(const Eigen::MatrixXd& covariance) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < covariance.cols(); ++j)
+      row.push_back(i == j ? Json(1) : Number(covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j))));
+    rows.push_back(row);
+  }
+  return rows;
 }
 
 Json BudgetJson(const Calibration& calibration) {
@@ -158,6 +170,8 @@ Json ToJson(const Calibration& c) {
     json["covariance"].push_back(row);
   }
   json["covariance_of"] = c.estimated;
+  json["correlation"] = CorrelationJson(c.covariance);
+  json["coverage_probability"] = kCoverage;
   json["joint"] = {{"k", Number(c.joint.k)}, {"dof", Number(c.joint.dof)}};
   json["grid"] = {{"step", c.grid.step}, {"S", Number(c.grid.S)}, {"nodes", Whole(c.grid.nodes)}};
   for (size_t k = 0; k < c.grid.at.size(); ++k) json["grid"][c.grid.names[k]] = c.grid.at[k];

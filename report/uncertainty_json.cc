@@ -1,4 +1,5 @@
 #include "report/uncertainty_json.h"
+#include <Eigen/Eigenvalues>
 #include <limits>
 #include <optional>
 
@@ -89,6 +90,17 @@ bool ReadCovariance(const Json& json, Calibration* calibration) {
   return true;
 }
 
+// Symmetric, finite, and the covariance of something: a damaged one would make uncertainties look small.
+bool IsCovariance(const Eigen::MatrixXd& matrix) {
+  constexpr double kRounding = 1e-9;
+  if (!matrix.allFinite() || (matrix.diagonal().array() < 0).any()) return false;
+  const Eigen::VectorXd u = matrix.diagonal().cwiseSqrt();
+  const Eigen::VectorXd scale = (u.array() > 0).select(u.cwiseInverse(), 0.0);
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * matrix * scale.asDiagonal();
+  if ((correlation - correlation.transpose()).cwiseAbs().maxCoeff() > kRounding) return false;
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation).eigenvalues()[0] > -kRounding;
+}
+
 bool ReadBudget(const Json& json, Calibration* calibration) {
   const Json& budget = At(json, "budget");
   if (!budget.is_array()) return false;
@@ -134,6 +146,15 @@ Result<void> ReadUncertainties(const Json& json, const std::string& file, Calibr
     ReadParameter(json["parameters"][k], &calibration->parameters[k]);
   if (json.contains("covariance_of") && !ReadCovariance(json, calibration))
     return expected("a square \"covariance\" of the parameters in \"covariance_of\"");
+  const bool sound = calibration->covariance.size() == 0 || !calibration->ok() || IsCovariance(calibration->covariance);
+  if (!sound)
+    return Error{file +
+                 ": covariance: expected a symmetric matrix of numbers without negative eigenvalues; the file "
+                 "was changed or damaged: refine again"};
+  for (const Parameter& parameter : calibration->parameters)
+    if (parameter.role == Role::kEstimate && (parameter.u < 0 || parameter.U < 0 || !(parameter.dof > 0)))
+      return Error{file + ": parameters: " + parameter.name +
+                   ": expected u and U not below 0 and dof above 0; the file was changed or damaged: refine again"};
   if (json.contains("budget") && !ReadBudget(json, calibration))
     return expected("a list of sources with numbers for the estimated parameters as \"budget\"");
   if (json.contains("volume") && !json["volume"].empty() && !ReadVolume(json["volume"], &calibration->volume))

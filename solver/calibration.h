@@ -61,6 +61,7 @@ struct BudgetLine {
   std::vector<double> contribution;  // u per estimated parameter
   std::vector<double> share;         // of the parameter's variance
   double dof = 0;                    // infinite for what was declared
+  bool random = false;               // noise: anew in every view or point
 };
 
 // Known lengths that took no part in the calibration: measured minus known, mm.

@@ -79,7 +79,8 @@ void JudgeMisfits(Calibration* result) {
 void JudgeNeighbours(const Solution& solution, Calibration* result) {
   const Neighbours neighbours = CorrelationOfNeighbours(solution.problem, solution.fit.estimate, solution.linear);
   result->neighbours = neighbours.correlation;
-  if (!solution.problem.With({Scope::kTarget}, Role::kConsider).empty()) return;  // that looks the same
+  // What is considered looks the same, and is in u.
+  if (!solution.problem.With({Scope::kSystem, Scope::kTarget}, Role::kConsider).empty()) return;
   const double significant = kFarFromIndependent * neighbours.standard_error;
   if (neighbours.correlation < std::max(significant, kLeastCorrelation)) return;
   result->warnings.push_back(fmt::format(
@@ -130,6 +131,8 @@ void Judge(const Solution& solution, const Jackknife& jackknife, double noise_do
     JudgeFit(calibration->lack_of_fit, calibration);
   }
   JudgePriors(solution.problem, calibration);
+  if (!calibration->covariance.allFinite())
+    calibration->unreliable.push_back("the uncertainties overflow: something was declared with an absurd u");
   if (!calibration->estimated.empty() && noise_dof < 1)
     calibration->unreliable.push_back(
         "too few views: not more than there are quantities to estimate, so their scatter tells nothing");

@@ -90,7 +90,8 @@ RobustSphere FitRobustSphere(std::span<const Eigen::Vector3d> points, const Sphe
   }
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<double> distances = Distances(ball, points);
-    const double within = std::max(kOffSphere * kMadToSigma * Median(distances), kRounding_mm);
+    const double sigma = round == 0 ? kMadToSigma * Median(distances) : result.fit.sigma;
+    const double within = std::max(kOffSphere * sigma, kRounding_mm);
     std::vector<bool> off(points.size());
     Points on;
     for (size_t i = 0; i < points.size(); ++i) {

@@ -43,6 +43,15 @@ double Thickness(const Points& points) {
 std::string Doubt(const Points& points, const RobustSphere& sphere, double ball_diameter) {
   constexpr double kFlat = 3;  // the cap is no higher than its noise
   constexpr double kSameRadius = 0.05;
+  const SphereFit free = FitRobustSphere(points).fit;
+  if (ball_diameter > 0 && free.doubt.empty()) {
+    const double off = 2 * free.radius / ball_diameter - 1, u = 2 * std::sqrt(free.covariance(3, 3)) / ball_diameter;
+    if (std::abs(off) > kSameRadius + 5 * u)
+      return fmt::format(
+          "the points lie on a sphere of diameter {:.5g} mm, expected ball_diameter, {:.5g} mm; are both "
+          "in the declared unit?",
+          2 * free.radius, ball_diameter);
+  }
   if (!sphere.fit.doubt.empty()) return sphere.fit.doubt;
   Points on;
   for (size_t i = 0; i < points.size(); ++i)
@@ -51,15 +60,6 @@ std::string Doubt(const Points& points, const RobustSphere& sphere, double ball_
     return "the points lie on a plane within their noise, which leaves the side of the centre open; one laser line "
            "sees "
            "only a circle, expected points on a cap";
-  if (ball_diameter == 0) return "";
-  const SphereFit free = FitSphere(on);
-  const double difference = 2 * free.radius / ball_diameter - 1,
-               u = 2 * std::sqrt(free.covariance(3, 3)) / ball_diameter;
-  if (free.doubt.empty() && std::abs(difference) > kSameRadius + 5 * u)
-    return fmt::format(
-        "the points lie on a sphere of diameter {:.5g} mm, expected ball_diameter, {:.5g} mm; are both "
-        "in the declared unit?",
-        2 * free.radius, ball_diameter);
   if (2 * sphere.set_aside > std::ssize(points))
     return fmt::format("{} of {} points do not lie on the sphere, expected less than half", sphere.set_aside,
                        points.size());

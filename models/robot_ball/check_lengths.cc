@@ -8,6 +8,8 @@
 namespace scancal {
 namespace {
 
+constexpr double kMostOff = 0.4;  // logarithm of half as much again
+
 struct Pair {
   int a, b;
   double distance, u;
@@ -31,9 +33,9 @@ Result<Pairs> ReadPairs(const std::filesystem::path& path, const Units& units) {
                                                      units));
   const Table& table = result.table;
   const auto index = [&](const std::string& ball) {
-    const auto found = std::find(result.balls.begin(), result.balls.end(), ball);
-    if (found == result.balls.end()) result.balls.push_back(ball);
-    return static_cast<int>(found - result.balls.begin());
+    const auto found = std::find(result.balls.begin(), result.balls.end(), ball) - result.balls.begin();
+    if (found == std::ssize(result.balls)) result.balls.push_back(ball);
+    return static_cast<int>(found);
   };
   for (size_t row = 0; row < table.rows(); ++row) {
     Pair pair{index(table.Text("ball_a", row)), index(table.Text("ball_b", row)), table.Number("distance", row), 0,
@@ -73,6 +75,15 @@ bool FindPoses(const Station& station, const Pair& pair, CheckLength* length) {
   return true;
 }
 
+// The distance in the frame of the scanner, where one pose saw both balls, over the true one; 1 where none did.
+double RatioWithinAPose(const Station& station, const Pair& pair) {
+  for (const RobotBall::View& view : station.views) {
+    const RobotBall::View a = Only(view, pair.a), b = Only(view, pair.b);
+    if (!a.balls.empty() && !b.balls.empty()) return (a.balls[0].centre - b.balls[0].centre).norm() / pair.distance;
+  }
+  return 1;
+}
+
 }  // namespace
 
 Result<CheckLengths> ReadCheck(const CheckFiles& paths, const std::filesystem::path& folder,
@@ -93,6 +104,12 @@ Result<CheckLengths> ReadCheck(const CheckFiles& paths, const std::filesystem::p
     for (const Station& station : poses.stations) {
       CheckLength length{name + " at " + station.name, {}, {}, pair.distance, pair.u};
       if (!FindPoses(station, pair, &length)) continue;
+      if (const double ratio = RatioWithinAPose(station, pair); std::abs(std::log(ratio)) > kMostOff)
+        return pairs.table.Wrong(
+            pair.row, "distance",
+            fmt::format("the distance {} is {:.4g} times this one as the scanner saw it in a pose, expected nearly the "
+                        "same; see units: length, the names of the columns and of the balls",
+                        length.name, ratio));
       from_one_pose += length.first_pose.name == length.second_pose.name;
       result.lengths.push_back(std::move(length));
     }

@@ -66,7 +66,7 @@ Result<Comparison> RobotScanner::Compare() const {
   Comparison comparison;
   if (!data.check.empty()) comparison.columns = {{"max/mm"}, {"mean/mm"}};
   for (size_t k = 0; k < data.check.size() && k < kMostPositions; ++k)
-    comparison.columns.push_back({data.check[k].name, 2});
+    comparison.columns.push_back({std::to_string(k + 1), 2});
   comparison.columns.push_back({"rms of balls/mm"});
   comparison.columns.push_back({"s", 2});
   const std::vector<Method> methods = {{"nominal robot", [&] { return InitialHandEye(data); }},

@@ -123,7 +123,7 @@ Result<void> CheckBalls(const RobotData& data, const Observations& observations)
   const std::optional<WrongBall> wrong = FindWrongBall(data);
   if (!wrong) return {};
   for (size_t row = 0; row < observations.seen.size(); ++row)
-    if (observations.seen[row].pose == wrong->pose && observations.seen[row].ball == wrong->ball)
+    if (observations.Pose(row) == wrong->pose && observations.Ball(row) == wrong->ball)
       return observations.table.Wrong(row, "ball", "found \"" + wrong->ball + "\", but " + wrong->sentence);
   return Error{observations.table.name() + ": " + wrong->sentence};
 }
@@ -142,7 +142,7 @@ Result<void> TakeStations(const Files& files, const std::filesystem::path& folde
   SCANCAL_RETURN_IF_ERROR(AttachBalls(observations, balls, artifact.table.name(), declared, &poses));
   data.usual_ball_noise = UsualNoise(observations, declared);
   result->centres_have_u = !observations.fitted && observations.table.Has("u") && data.usual_ball_noise > 0;
-  data.stations = SeenStations(poses, &result->warnings);
+  data.stations = TakeSeenStations(&poses, &result->warnings);
   SCANCAL_RETURN_IF_ERROR(CheckPlausible(data, poses.table.name(), &result->warnings));
   SCANCAL_RETURN_IF_ERROR(CheckBalls(data, observations));
   result->files.insert(result->files.end(), observations.files.begin(), observations.files.end());

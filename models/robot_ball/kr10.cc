@@ -45,4 +45,13 @@ Eigen::Isometry3d PublishedHandEye() {
   return pose;
 }
 
+Eigen::Isometry3d DrawnHandEye() {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() << 0, 1, 0,  //
+      1, 0, 0,               //
+      0, 0, -1;
+  pose.translation() << 0, 0, 265;
+  return pose;
+}
+
 }  // namespace scancal

@@ -24,4 +24,7 @@ std::vector<Link> PublishedLinkErrors();
 // right-handed frame needs. The scanner's origin lies in the middle of what it sees, its Z points back to the flange.
 Eigen::Isometry3d PublishedHandEye();
 
+// What a drawing would say of it: axes parallel to those of the flange, 265 mm along its Z.
+Eigen::Isometry3d DrawnHandEye();
+
 }  // namespace scancal

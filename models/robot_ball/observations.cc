@@ -36,8 +36,6 @@ Result<Observations> ReadObservations(const std::filesystem::path& path, const s
   result.seen.reserve(table.rows());
   for (size_t row = 0; row < table.rows(); ++row) {
     SeenCentre& seen = result.seen.emplace_back();
-    seen.pose = table.Text("pose", row);
-    seen.ball = table.Text("ball", row);
     if (result.fitted) continue;
     seen.centre << table.Number("x", row), table.Number("y", row), table.Number("z", row);
     if (!table.Has("u")) continue;

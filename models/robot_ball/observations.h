@@ -9,7 +9,6 @@
 namespace scancal {
 
 struct SeenCentre {
-  std::string pose, ball;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();      // in the scanner's frame, mm
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of it, mm^2; zero: not said
 };
@@ -20,6 +19,8 @@ struct Observations {
   bool fitted = false;                       // to points
   std::vector<std::filesystem::path> files;  // of points
   std::vector<std::string> warnings;
+  const std::string& Pose(size_t row) const { return table.Text("pose", row); }
+  const std::string& Ball(size_t row) const { return table.Text("ball", row); }
 };
 
 // Columns pose, ball and x, y, z[, u], or file: points on that ball (columns x, y, z; its path from `folder`), through

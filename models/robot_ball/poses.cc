@@ -23,7 +23,6 @@ std::vector<TableColumn> Columns(size_t joints) {
   }
   for (const char* axis : {"x", "y", "z"}) columns.push_back({axis, Cells::kNumber, Dimension::kLength});
   for (const std::string& part : kQuaternion) columns.push_back({part, Cells::kNumber});
-  columns.push_back({"q1", Cells::kNumberOrNothing, Dimension::kAngle, false});
   return columns;
 }
 
@@ -32,7 +31,7 @@ Result<Table> ReadTable(const std::filesystem::path& path, size_t joints, const 
   if (!table.ok() && table.error().message.find("expected also") != std::string::npos)
     return Error{table.error().message + (joints > 0 ? "; robot: links declares " + std::to_string(joints) +
                                                            " joints, without it the poses are those of the flange"
-                                                     : "; without robot: links the poses are those of the flange")};
+                                                     : "; joint angles need robot: links in dataset.yaml")};
   if (table.ok() && joints > 0 && table->Has(Joint(joints)))
     return Error{table->name() + ": found the column " + Joint(joints) + ", expected " + std::to_string(joints) +
                  " joints, one a row of robot: links"};

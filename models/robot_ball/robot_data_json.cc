@@ -66,9 +66,10 @@ RobotDeclaration Parsed(const Json& json) {
     for (const Json& pose : each.at("poses"))
       station.views.push_back(PoseOfJson(pose, data.links.size(), data.spheres.size()));
   }
-  for (const Json& each : json.at("check"))  // a length's balls are not of the artifact
-    data.check.push_back({each.at("name"), PoseOfJson(each.at("first"), data.links.size(), 1),
-                          PoseOfJson(each.at("second"), data.links.size(), 1), each.at("distance"), each.at("u")});
+  constexpr size_t kAny = 1000;  // a length's balls are not of the artifact
+  for (const Json& each : json.at("check"))
+    data.check.push_back({each.at("name"), PoseOfJson(each.at("first"), data.links.size(), kAny),
+                          PoseOfJson(each.at("second"), data.links.size(), kAny), each.at("distance"), each.at("u")});
   for (const CheckLength& length : data.check)
     if (length.first_pose.balls.size() != 1 || length.second_pose.balls.size() != 1) throw std::out_of_range("check");
   return result;

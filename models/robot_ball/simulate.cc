@@ -10,7 +10,8 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kBallDiameter = 12.70;  // mm
 // Poses of the stations have the streams 1, 2, ... of the seed, what is measured there those of the noise seed.
-constexpr uint64_t kArtifactStream = uint64_t{1} << 32, kCheckStreams = uint64_t{2} << 32;
+constexpr uint64_t kArtifactStream = uint64_t{1} << 32, kScaleStream = uint64_t{2} << 32,
+                   kCheckStreams = uint64_t{3} << 32;
 constexpr int kEnd = 4;  // balls of an end of the artifact
 
 PoseSpread SpreadOf(PoseConfiguration configuration) {
@@ -28,7 +29,7 @@ PoseSpread SpreadOf(PoseConfiguration configuration) {
 
 // Along the axes of the base, one after the other there and back.
 Eigen::Vector3d Translation(PoseConfiguration configuration, int k) {
-  constexpr double kFar = 30, kNear = 3;  // mm
+  constexpr double kFar = 20, kNear = 2;  // mm
   const int axis = k % 3;
   const bool is_far =
       configuration == PoseConfiguration::kSpatial || axis < (configuration == PoseConfiguration::kPlanar ? 2 : 1);
@@ -160,7 +161,7 @@ CheckLength Simulation::Check(int number) const {
   const PoseSpread spread = SpreadOf(PoseConfiguration::kSpatial);
   CheckLength check;
   check.name = std::to_string(number + 1);
-  check.distance = kScaleLength + scene_.u_spheres * noise.Normal();
+  check.distance = kScaleLength + scene_.u_spheres * Random(scene_.noise_seed, kScaleStream).Normal();
   check.u = scene_.u_spheres;
   while (true) {
     const Eigen::Isometry3d place = DrawPlace(&random);

@@ -20,7 +20,7 @@ struct RobotScene {
       poses = 8;         // poses of each station: half of them look at one end of the artifact, half at the other
   int translations = 6;  // poses of the first station besides, that only translate from its first one
   PoseConfiguration configuration = PoseConfiguration::kSpatial;
-  double field = 80;            // mm from the scanner's origin in which a ball is seen
+  double field = 92;  // mm from the scanner's origin in which balls are seen: the published field's half diagonal
   double repeatability = 0.04;  // mm, standard deviation per axis of the flange's position, one error a pose
   double ball_noise = 0.035;    // mm, standard deviation per axis of a ball centre
   double u_spheres = 0.001;     // mm: of each coordinate of the artifact's CMM, and of the check distances

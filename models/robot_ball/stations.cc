@@ -33,16 +33,14 @@ std::vector<std::string> NamesOf(const PoseTable& poses) {
 }
 
 Error SeenTwice(const Observations& observations, size_t row) {
-  const SeenCentre& seen = observations.seen[row];
-  const auto first = std::find_if(observations.seen.begin(), observations.seen.end(), [&](const SeenCentre& other) {
-    return other.pose == seen.pose && other.ball == seen.ball;
-  });
+  size_t first = 0;
+  while (observations.Pose(first) != observations.Pose(row) || observations.Ball(first) != observations.Ball(row))
+    ++first;
   return observations.table.Wrong(
       row, "ball",
       fmt::format("found {} again in pose {} (it stands also at {}), expected each ball once; name one of them as the "
                   "ball that it is, or remove it",
-                  Quoted(seen.ball), Quoted(seen.pose),
-                  observations.table.Place(static_cast<size_t>(first - observations.seen.begin()))));
+                  Quoted(observations.Ball(row)), Quoted(observations.Pose(row)), observations.table.Place(first)));
 }
 
 }  // namespace
@@ -57,42 +55,43 @@ Result<void> AttachBalls(const Observations& observations, const std::vector<std
   for (const std::string& ball : balls) indices.try_emplace(ball, static_cast<int>(indices.size()));
   const double unit = observations.fitted ? MedianSize(observations) : UsualNoise(observations, declared_noise);
   for (size_t row = 0; row < observations.seen.size(); ++row) {
-    const SeenCentre& seen = observations.seen[row];
-    const auto place = poses->places.find(seen.pose);
+    const std::string &pose_name = observations.Pose(row), &ball_name = observations.Ball(row);
+    const auto place = poses->places.find(pose_name);
     if (place == poses->places.end())
       return observations.table.Wrong(row, "pose",
-                                      "found " + Quoted(seen.pose) + ", which " + poses->table.name() +
-                                          " does not have" + Suggestion(seen.pose, NamesOf(*poses)));
-    const auto ball = indices.find(seen.ball);
+                                      "found " + Quoted(pose_name) + ", which " + poses->table.name() +
+                                          " does not have" + Suggestion(pose_name, NamesOf(*poses)));
+    const auto ball = indices.find(ball_name);
     if (ball == indices.end())
       return observations.table.Wrong(
           row, "ball",
-          "found " + Quoted(seen.ball) + ", which " + where + " does not have" + Suggestion(seen.ball, balls));
+          "found " + Quoted(ball_name) + ", which " + where + " does not have" + Suggestion(ball_name, balls));
     std::vector<RobotBall::SeenBall>& view = poses->View(place->second).balls;
     for (const RobotBall::SeenBall& other : view)
       if (other.sphere == ball->second) return SeenTwice(observations, row);
     RobotBall::SeenBall& added = view.emplace_back();
     added.sphere = ball->second;
-    added.centre = seen.centre;
-    if (unit > 0 && SizeOf(seen.covariance) > 0) added.spread = SquareRoot(seen.covariance) / unit;
+    added.centre = observations.seen[row].centre;
+    const Eigen::Matrix3d& covariance = observations.seen[row].covariance;
+    if (unit > 0 && SizeOf(covariance) > 0) added.spread = SquareRoot(covariance) / unit;
   }
   return {};
 }
 
-std::vector<Station> SeenStations(const PoseTable& poses, std::vector<std::string>* warnings) {
+std::vector<Station> TakeSeenStations(PoseTable* poses, std::vector<std::string>* warnings) {
   std::vector<Station> stations;
   std::vector<std::string> empty;
-  for (const Station& station : poses.stations) {
+  for (Station& station : poses->stations) {
     Station kept{station.name, {}};
-    for (const RobotBall::View& view : station.views) {
+    for (RobotBall::View& view : station.views) {
       if (view.balls.empty()) empty.push_back(view.name);
-      else kept.views.push_back(view);
+      else kept.views.push_back(std::move(view));
     }
     if (!kept.views.empty()) stations.push_back(std::move(kept));
   }
   if (!empty.empty())
     warnings->push_back(fmt::format("{}: no ball was seen from {} of its poses, which are left out: {}",
-                                    poses.table.name(), empty.size(), Listed(empty)));
+                                    poses->table.name(), empty.size(), Listed(empty)));
   return stations;
 }
 

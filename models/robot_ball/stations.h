@@ -18,7 +18,8 @@ double UsualNoise(const Observations& observations, double declared);
 Result<void> AttachBalls(const Observations& observations, const std::vector<std::string>& balls,
                          const std::string& where, double declared_noise, PoseTable* poses);
 
-// Without the poses that saw no ball, and stations without poses: both are warned of.
-std::vector<Station> SeenStations(const PoseTable& poses, std::vector<std::string>* warnings);
+// Moves the stations out of the table, without the poses that saw no ball, which are warned of, and without stations
+// that have no other.
+std::vector<Station> TakeSeenStations(PoseTable* poses, std::vector<std::string>* warnings);
 
 }  // namespace scancal

@@ -73,8 +73,12 @@ class Setter {
     quantity.u = setting.u * dataset_.units.Of(quantity.unit == Unit::kMm    ? Dimension::kLength
                                                : quantity.unit == Unit::kRad ? Dimension::kAngle
                                                                              : Dimension::kNone);
-    quantity.role = setting.role == "estimate" ? Role::kEstimate : quantity.u > 0 ? Role::kConsider : Role::kHold;
-    if (index == Turntable::kNoiseY && quantity.role == Role::kHold)
+    // Of what is random, none at all is a declaration too, which the residuals may contradict.
+    const bool told = random && index != Turntable::kNoiseZ;
+    quantity.role = setting.role == "estimate"                               ? Role::kEstimate
+                    : setting.role == "consider" && (told || quantity.u > 0) ? Role::kConsider
+                                                                             : Role::kHold;
+    if (index == Turntable::kNoiseY && quantity.u == 0 && setting.role != "estimate")
       return Wrong(setting.name, "expected more than 0, or estimate: every point has noise");
     return {};
   }
@@ -103,7 +107,11 @@ class Setter {
     if (setting.role == "estimate") return {};
     if (setting.u > 0 && setting.u < 1)
       return Wrong(setting.name, "expected the integrated correlation length in points, 1 is white noise");
-    declaration_.line_correlation = std::max(1.0, setting.u);
+    if (setting.role == "hold") {
+      for (const int k : {Turntable::kLineOffset, Turntable::kLineSlope}) model_.quantity(k).role = Role::kHold;
+    } else {
+      declaration_.line_correlation = std::max(1.0, setting.u);
+    }
     return {};
   }
 

@@ -75,7 +75,7 @@ void DeclareLineCorrelation(const TurntableDeclaration& declaration, const std::
   }
   const LineNoise excess = ExcessOfCorrelatedNoise(*declaration.line_correlation, Median(counts), Median(spreads));
   for (const auto& [k, u] : {std::pair{Turntable::kLineOffset, excess.offset}, {Turntable::kLineSlope, excess.slope}}) {
-    model->quantity(k).role = u > 0 ? Role::kConsider : Role::kHold;
+    model->quantity(k).role = Role::kConsider;
     model->quantity(k).u = sigma * u;
   }
 }

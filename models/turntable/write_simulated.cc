@@ -97,6 +97,9 @@ std::string Influences(const TurntableScene& scene) {
   for (const auto& [name, u] :
        {std::pair{"noise_y", scene.noise_y}, {"encoder_jitter", scene.encoder_jitter / kDegree}, {"form", scene.form}})
     if (u > 0) list += fmt::format("{}{}: {:g}", list.empty() ? "" : ", ", name, u);
+  if (scene.line_correlation > 1)
+    list += fmt::format("{}line_correlation: {:g}", list.empty() ? "" : ", ", scene.line_correlation);
+  if (scene.one_plate && scene.form > 0) list += ", one_plate: yes";
   return list.empty() ? "" : "influences: {" + list + "}\n";
 }
 

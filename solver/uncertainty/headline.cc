@@ -12,7 +12,7 @@ std::vector<double> Plain(const Eigen::VectorXd& x) { return {x.data(), x.data()
 
 BudgetLine Line(const std::string& source, char type, Unit unit, double u, const Eigen::VectorXd& sensitivity,
                 const Eigen::MatrixXd& covariance, double dof) {
-  return {source, type, unit, u, Plain(sensitivity), Plain(covariance.diagonal().cwiseSqrt()), {}, dof};
+  return {source, type, unit, u, Plain(sensitivity), Plain(covariance.diagonal().cwiseMax(0).cwiseSqrt()), {}, dof};
 }
 
 BudgetLine Line(const Problem& problem, const Contribution& contribution, bool from_data, double dof) {
@@ -46,6 +46,7 @@ Headline Weighted(const Problem& problem, const Variances& variances, const Budg
       for (Eigen::Index k = 0; k < n; ++k) shares[k][static_cast<Eigen::Index>(s)] = contribution.covariance(k, k);
     }
     headline.budget.push_back(Line(problem, contribution, from_data, dof));
+    headline.budget.back().random = contribution.scope == Scope::kView || contribution.scope == Scope::kPoint;
   }
   for (Eigen::Index k = 0; k < n; ++k) headline.dof[k] = variances.Dof(shares[k], headline.covariance(k, k));
   return headline;
@@ -72,6 +73,7 @@ Headline HeadlineOf(const Solution& solution, const Covariance& clustered) {
   const Eigen::Index n = clustered.matrix.rows();
   Headline headline = solution.variances ? Weighted(solution.problem, *solution.variances, budget, n)
                                          : Clustered(solution.problem, clustered, budget, n);
+  headline.covariance = (headline.covariance + headline.covariance.transpose().eval()) / 2;
   AddShares(&headline);
   return headline;
 }

@@ -7,6 +7,8 @@
 namespace scancal {
 namespace {
 
+constexpr std::ptrdiff_t kMostLeftOut = 200;
+
 // J~' b u of everything that was considered: of target scope per target, system x quantities; of system scope stacked
 // over the targets, (system targets) x quantities.
 struct Considered {
@@ -45,7 +47,7 @@ Considered ConsideredScores(const Problem& problem, const Estimate& fit, const L
 Jackknife LeaveOneTargetOut(const Problem& problem, const Fit& fit) {
   Jackknife result;
   const auto m = std::ssize(problem.targets);
-  if (m < 2) return result;
+  if (m < 2 || m > kMostLeftOut) return result;
   result.estimates.resize(m, fit.estimate.system.size());
   for (std::ptrdiff_t t = 0; t < m; ++t) {
     Problem rest = problem;

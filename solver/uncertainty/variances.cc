@@ -238,7 +238,6 @@ std::vector<std::string> ReleaseExceeded(Problem* problem, Estimate at, double l
   Problem free = *problem;
   std::vector<int> declared;
   for (const int k : problem->With({Scope::kView, Scope::kPoint}, Role::kConsider)) {
-    if (!(problem->quantities[k].u > 0)) continue;
     declared.push_back(k);
     free.quantities[k].role = Role::kEstimate;
   }

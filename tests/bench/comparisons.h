@@ -18,6 +18,9 @@ void CompareGrid(const LargeData& data, Table* table);
 // `scipy_script` is given: time, memory, answer. folder: for the points that are handed over.
 void CompareJoint(const LargeData& data, const std::filesystem::path& scipy_script, const std::filesystem::path& folder,
                   Table* table);
+// The robot's refinement against scipy, if `scipy_script` is given, and for more poses. folder: for what is handed
+// over.
+void CompareRobot(const std::filesystem::path& scipy_script, const std::filesystem::path& folder, Table* table);
 // Everything after reading, for more points on the same profiles, and for more profiles.
 void CompareScaling(Table* table);
 // A trial of the Monte Carlo against a refinement.

@@ -24,6 +24,7 @@ void Run(const std::filesystem::path& folder, const std::filesystem::path& scipy
   CompareReading(folder, &table);
   CompareScaling(&table);
   CompareMonteCarlo(&table);
+  CompareRobot(scipy_script.empty() ? "" : scipy_script.parent_path() / "scipy_robot.py", folder, &table);
   Say("three placements, three million points");
   LargeData data;
   data.points = SimulateTurntable(LargeScene());

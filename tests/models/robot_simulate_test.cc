@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <memory>
 #include <numbers>
+#include "models/robot_ball/declaration.h"
+#include "models/robot_ball/gauge.h"
 #include "models/robot_ball/inverse_kinematics.h"
 #include "models/robot_ball/simulate.h"
+#include "models/robot_ball/write_simulated.h"
 #include "solver/model.h"
+#include "tests/io/temporary_folder.h"
 
 namespace scancal {
 namespace {
@@ -20,7 +24,7 @@ RobotScene Noiseless() {
 double LargestResidual(const SimulatedRobot& robot, const RobotSetup& setup) {
   const RobotBall model(robot.data.links, robot.data.spheres);
   std::vector<double> q(model.quantities().size());
-  Eigen::Map<Eigen::Matrix<double, 6, 1>>(&q[RobotBall::kHandEye]) = NumbersOf(setup.flange_from_scanner);
+  Eigen::VectorXd::Map(&q[RobotBall::kHandEye], 6) = NumbersOf(setup.flange_from_scanner);
   double* number = &q[RobotBall::kLinks];
   for (const Link& error : setup.link_errors)
     for (const double x : {error.theta, error.d, error.a, error.alpha, error.beta}) *number++ = x;
@@ -43,6 +47,20 @@ TEST(SimulateRobot, WithoutNoiseTheTruthExplainsEveryBall) {
   RobotSetup nominal = robot.truth;
   nominal.link_errors.assign(6, {});
   EXPECT_GT(LargestResidual(robot, nominal), 0.5);
+}
+
+TEST(SimulateRobot, SoDoesItInTheGaugeOfACalibration) {
+  SimulatedRobot robot = SimulateRobot(Noiseless());
+  const Gauged gauged = InDefaultGauge(robot.data.links, robot.truth);
+  for (Eigen::Isometry3d& pose : robot.base_from_artifact) pose = gauged.base_from_true_base * pose;
+  EXPECT_LT(LargestResidual(robot, gauged.setup), 1e-9);
+  const RobotBall model(robot.data.links, robot.data.spheres);
+  size_t k = RobotBall::kLinks;
+  for (const Link& error : gauged.setup.link_errors)
+    for (const double x : {error.theta, error.d, error.a, error.alpha, error.beta})
+      if (model.quantities()[k++].role == Role::kHold) {
+        EXPECT_EQ(x, 0) << model.quantities()[k - 1].name;
+      }
 }
 
 TEST(SimulateRobot, IsTheExperimentOfThePaper) {
@@ -141,6 +159,70 @@ TEST(SimulateRobot, ScaleIsItsLengthApart) {
     EXPECT_NEAR((in_base(check.first_pose) - in_base(check.second_pose)).norm(), kScaleLength, 1e-9);
     EXPECT_EQ(check.distance, kScaleLength);
   }
+}
+
+void ExpectSame(const RobotBall::View& a, const RobotBall::View& b) {
+  EXPECT_EQ(a.name, b.name);
+  ASSERT_EQ(a.joints.size(), b.joints.size());
+  for (size_t k = 0; k < a.joints.size(); ++k) EXPECT_NEAR(a.joints[k], b.joints[k], 1e-11);
+  ASSERT_EQ(a.balls.size(), b.balls.size());
+  for (size_t k = 0; k < a.balls.size(); ++k) EXPECT_LT((a.balls[k].centre - b.balls[k].centre).norm(), 1e-6);
+}
+
+TEST(WriteSimulatedRobot, IsReadBackAsItWas) {
+  RobotScene scene;
+  scene.stations = 3;
+  const TemporaryFolder folder;
+  const Result<void> written = WriteSimulatedRobot(scene, true, folder.path());
+  ASSERT_TRUE(written.ok()) << written.error().message;
+  const Result<Dataset> dataset = ReadDataset(folder.path());
+  ASSERT_TRUE(dataset.ok()) << dataset.error().message;
+  const Result<RobotDeclaration> read = DeclareRobot(*dataset);
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_THAT(read->warnings, testing::IsEmpty());
+  const RobotData data = SimulateRobot(scene).data;
+  ASSERT_EQ(read->data.links.size(), data.links.size());
+  for (size_t k = 0; k < data.links.size(); ++k) {
+    const Link &a = read->data.links[k], &b = data.links[k];
+    EXPECT_NEAR(a.theta, b.theta, 1e-14);
+    EXPECT_EQ(a.d, b.d);
+    EXPECT_EQ(a.a, b.a);
+    EXPECT_NEAR(a.alpha, b.alpha, 1e-14);
+    EXPECT_EQ(a.beta, b.beta);
+  }
+  ASSERT_EQ(read->data.spheres.size(), data.spheres.size());
+  for (size_t k = 0; k < data.spheres.size(); ++k) {
+    EXPECT_EQ(read->data.spheres[k].name, data.spheres[k].name);
+    EXPECT_LT((read->data.spheres[k].centre - data.spheres[k].centre).norm(), 1e-6);
+  }
+  EXPECT_NEAR(read->data.u_spheres, data.u_spheres, 1e-12);
+  EXPECT_EQ(read->data.ball_diameter, data.ball_diameter);
+  EXPECT_EQ(read->data.usual_ball_noise, data.usual_ball_noise);
+  ASSERT_EQ(read->data.stations.size(), data.stations.size());
+  for (size_t s = 0; s < data.stations.size(); ++s) {
+    EXPECT_EQ(read->data.stations[s].name, data.stations[s].name);
+    ASSERT_EQ(read->data.stations[s].views.size(), data.stations[s].views.size());
+    for (size_t k = 0; k < data.stations[s].views.size(); ++k)
+      ExpectSame(read->data.stations[s].views[k], data.stations[s].views[k]);
+  }
+  ASSERT_EQ(read->data.check.size(), data.check.size());
+  for (size_t k = 0; k < data.check.size(); ++k) {
+    EXPECT_NEAR(read->data.check[k].distance, data.check[k].distance, 1e-6);
+    EXPECT_EQ(read->data.check[k].u, data.check[k].u);
+    ExpectSame(read->data.check[k].first_pose, data.check[k].first_pose);
+    ExpectSame(read->data.check[k].second_pose, data.check[k].second_pose);
+  }
+}
+
+TEST(WriteSimulatedRobot, RefusesWhatCannotBe) {
+  const TemporaryFolder folder;
+  RobotScene scene;
+  scene.poses = 0;
+  EXPECT_THAT(WriteSimulatedRobot(scene, false, folder.path()).error().message,
+              testing::HasSubstr("stations and poses"));
+  scene = {};
+  scene.repeatability = -1;
+  EXPECT_THAT(WriteSimulatedRobot(scene, false, folder.path()).error().message, testing::HasSubstr("repeatability"));
 }
 
 TEST(InverseKinematics, ReachesToRoundingOrSaysNo) {

@@ -1,0 +1,126 @@
+#include "tests/robot_study/efficiency.h"
+#include <glog/logging.h>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include "models/robot_ball/gauge.h"
+#include "models/robot_ball/robot_fit.h"
+#include "solver/uncertainty/coverage.h"
+#include "solver/uncertainty/headline.h"
+#include "solver/weigh.h"
+#include "tests/robot_study/in_parallel.h"
+
+namespace scancal::robot_study {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double kNormal95 = 1.959964;
+
+// The estimated quantities of the system at this setup.
+VectorXd Estimated(const Quantities& quantities, const RobotSetup& setup) {
+  std::vector<double> values(quantities.size());
+  VectorXd::Map(&values[RobotBall::kHandEye], 6) = NumbersOf(setup.flange_from_scanner);
+  double* number = &values[RobotBall::kLinks];
+  for (const Link& error : setup.link_errors)
+    for (const double x : {error.theta, error.d, error.a, error.alpha, error.beta}) *number++ = x;
+  std::vector<double> estimated;
+  for (size_t k = 0; k < quantities.size(); ++k)
+    if (quantities[k].scope == Scope::kSystem && quantities[k].role == Role::kEstimate) estimated.push_back(values[k]);
+  return Eigen::Map<VectorXd>(estimated.data(), std::ssize(estimated));
+}
+
+// A turn about the same axis the other way round is the same turn: the rotation vector nearest to that of `to`.
+void WrapHandEye(const VectorXd& to, VectorXd* numbers) {
+  auto turn = numbers->segment<3>(3);
+  const Eigen::Vector3d other = turn * (1 - 2 * std::numbers::pi / turn.norm()), wanted = to.segment<3>(3);
+  if ((other - wanted).norm() < (turn - wanted).norm()) turn = other;
+}
+
+struct Truth {
+  RobotSetup setup;
+  std::vector<Station> stations;
+};
+
+Truth TruthOf(const SimulatedRobot& robot) {
+  const Gauged gauged = InDefaultGauge(robot.data.links, robot.truth);
+  Truth truth{gauged.setup, robot.data.stations};
+  for (size_t s = 0; s < truth.stations.size(); ++s)
+    truth.stations[s].base_from_artifact = gauged.base_from_true_base * robot.base_from_artifact[s];
+  return truth;
+}
+
+// Covariance of the estimated quantities of the system.
+Eigen::MatrixXd BoundAt(const Truth& truth, const RobotBall& model) {
+  Problem problem = MakeProblem<RobotBall>(std::make_shared<const RobotBall>(model), truth.stations);
+  Estimate at = NominalStart(problem);
+  at.system = Estimated(model.quantities(), truth.setup);
+  Weigh(&problem, at);
+  return InverseInformation(Linearize(problem, at, Storey::kViews));
+}
+
+// Of the mean of n estimated standard deviations, each relative to its true one, from so many runs: those of normal
+// numbers with correlation rho have the correlation rho^2.
+double ErrorOfMeanRatio(const Eigen::MatrixXd& covariance, double runs) {
+  const VectorXd sigma = covariance.diagonal().cwiseSqrt();
+  const double squares = covariance.cwiseQuotient(sigma * sigma.transpose()).squaredNorm();
+  return std::sqrt(squares / (2 * runs)) / static_cast<double>(sigma.size());
+}
+
+struct Try {
+  VectorXd error, U;  // empty: failed
+};
+
+Try Refined(const RobotScene& scene, Noise noise, const Truth& truth) {
+  const SimulatedRobot robot = SimulateRobot(scene);
+  const RobotBall model = DeclaredModel(robot.data, scene, noise);
+  const Result<RobotFit> fit = FitRobot(robot.data, model, robot.truth);
+  if (!fit.ok() || !fit->solution.fit.converged) return {};
+  const Headline headline = HeadlineOf(fit->solution, ClusteredCovariance(fit->solution.problem, fit->solution.linear));
+  VectorXd value = fit->solution.fit.estimate.system;
+  const VectorXd wanted = Estimated(model.quantities(), truth.setup);
+  WrapHandEye(wanted, &value);
+  Try result{value - wanted, headline.covariance.diagonal().cwiseSqrt()};
+  for (Eigen::Index k = 0; k < value.size(); ++k) result.U[k] *= CoverageFactor(0.95, headline.dof[k]);
+  return result;
+}
+
+}  // namespace
+
+Efficiency StudyEfficiency(const RobotScene& scene, Noise noise, size_t runs, int threads) {
+  const SimulatedRobot robot = SimulateRobot(scene);
+  const Truth truth = TruthOf(robot);
+  const RobotBall exactly_known = DeclaredModel(robot.data, scene);
+  Efficiency efficiency;
+  for (const Quantity& quantity : exactly_known.quantities())
+    if (quantity.scope == Scope::kSystem && quantity.role == Role::kEstimate) efficiency.names.push_back(quantity.name);
+  const Eigen::MatrixXd bound = BoundAt(truth, exactly_known);
+  efficiency.bound = bound.diagonal().cwiseSqrt();
+  std::vector<Try> tries(runs);
+  InParallel(runs, threads, [&](size_t run) {
+    RobotScene noisy = scene;
+    noisy.noise_seed = scene.noise_seed + run;
+    tries[run] = Refined(noisy, noise, truth);
+  });
+  VectorXd squares = VectorXd::Zero(efficiency.bound.size()), held = squares, widths = squares;
+  for (const Try& each : tries) {
+    if (each.error.size() == 0) {
+      ++efficiency.failed;
+      continue;
+    }
+    ++efficiency.runs;
+    squares += each.error.cwiseAbs2();
+    held += (each.error.cwiseAbs().array() <= each.U.array()).cast<double>().matrix();
+    widths += each.U;
+  }
+  CHECK_GT(efficiency.runs, 0);
+  const auto n = static_cast<double>(efficiency.runs);
+  efficiency.ratio = (squares / n).cwiseSqrt().cwiseQuotient(efficiency.bound);
+  efficiency.u_of_ratio = ErrorOfMeanRatio(bound, n);
+  efficiency.coverage = held / n;
+  efficiency.width = widths.cwiseQuotient(efficiency.bound) / (n * kNormal95);
+  return efficiency;
+}
+
+}  // namespace scancal::robot_study
