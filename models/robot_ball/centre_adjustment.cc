@@ -95,7 +95,7 @@ Matrix3Xd AdjustByAngles(const Matrix3Xd& measured, const Matrix3Xd& on_artifact
   const auto [B, d] = Angles(measured, on_artifact);
   if (B.rows() == 0) return measured;
   const Eigen::BDCSVD<MatrixXd> svd(B, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const VectorXd sigma = svd.singularValues();
+  const VectorXd& sigma = svd.singularValues();
   const double k = std::pow(kRidge * sigma[0], 2);
   const VectorXd filter = sigma.array() / (sigma.array().square() + k);
   const VectorXd dX = svd.matrixV() * filter.cwiseProduct(svd.matrixU().transpose() * d);

@@ -81,7 +81,7 @@ std::optional<Matrix3d> RotationOfTranslating(const RobotData& points) {
     for (std::vector<View> left = station.views; !left.empty();)
       for (const Move& move : TakeTranslating(points, &left)) sum += move.flange * move.point.transpose();
   const Eigen::JacobiSVD<Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vector3d sigma = svd.singularValues();
+  const Vector3d& sigma = svd.singularValues();
   constexpr double kAlongOneLine = 1e-4;  // squared moves: a hundredth of the largest
   if (sigma[0] == 0 || sigma[1] < kAlongOneLine * sigma[0]) return std::nullopt;
   const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant();
