@@ -147,14 +147,10 @@ Result<void> ReadUncertainties(const Json& json, const std::string& file, Calibr
   if (json.contains("covariance_of") && !ReadCovariance(json, calibration))
     return expected("a square \"covariance\" of the parameters in \"covariance_of\"");
   const bool sound = calibration->covariance.size() == 0 || !calibration->ok() || IsCovariance(calibration->covariance);
-  if (!sound)
-    return Error{file +
-                 ": covariance: expected a symmetric matrix of numbers without negative eigenvalues; the file "
-                 "was changed or damaged: refine again"};
+  if (!sound) return expected("a symmetric \"covariance\" of finite numbers without negative eigenvalues");
   for (const Parameter& parameter : calibration->parameters)
     if (parameter.role == Role::kEstimate && (parameter.u < 0 || parameter.U < 0 || !(parameter.dof > 0)))
-      return Error{file + ": parameters: " + parameter.name +
-                   ": expected u and U not below 0 and dof above 0; the file was changed or damaged: refine again"};
+      return expected("u and U not below 0 and dof above 0 of " + parameter.name);
   if (json.contains("budget") && !ReadBudget(json, calibration))
     return expected("a list of sources with numbers for the estimated parameters as \"budget\"");
   if (json.contains("volume") && !json["volume"].empty() && !ReadVolume(json["volume"], &calibration->volume))

@@ -125,6 +125,7 @@ TEST(CalibrationJsonTest, UncertaintiesComeBack) {
 
 TEST(CalibrationJsonTest, WhatWasNotFiniteComesBackAsNoNumber) {
   Calibration before = WithBudgetAndVolume();
+  before.unreliable = {"the uncertainties overflow"};
   before.covariance(0, 1) = before.parameters[0].dof = before.volume.rows[1].back() = INFINITY;
   const auto after = CalibrationFromJson(ToJson(before), "f");
   ASSERT_TRUE(after.ok()) << after.error().message;
@@ -140,6 +141,10 @@ TEST(CalibrationJsonTest, DamagedUncertaintiesAreErrors) {
            {"covariance_of", R"(["M", "no parameter"])"},
            {"covariance", R"([[1, 2]])"},
            {"covariance", R"([[1, 2], [3]])"},
+           {"covariance", R"([[-1, 0], [0, 1]])"},
+           {"covariance", R"([[1, 0.5], [0.4, 1]])"},
+           {"covariance", R"([[1, 2], [2, 1]])"},
+           {"covariance", R"([[1, null], [null, 1]])"},
            {"covariance", R"([[1, 2], [3, "4"]])"},
            {"covariance", R"(5)"},
            {"budget", R"({})"},
@@ -155,6 +160,16 @@ TEST(CalibrationJsonTest, DamagedUncertaintiesAreErrors) {
     const auto after = CalibrationFromJson(json, "some.json");
     ASSERT_FALSE(after.ok()) << key << damaged;
     EXPECT_THAT(after.error().message, AllOf(StartsWith("some.json: expected "), HasSubstr("calibration.json?")));
+  }
+}
+
+TEST(CalibrationJsonTest, UncertaintiesThatCannotBeAreErrors) {
+  for (const char* key : {"u", "U", "dof"}) {
+    Json json = ToJson(WithBudgetAndVolume());
+    json["parameters"][0][key] = -1;
+    const auto after = CalibrationFromJson(json, "some.json");
+    ASSERT_FALSE(after.ok()) << key;
+    EXPECT_THAT(after.error().message, HasSubstr("u and U not below 0 and dof above 0 of M"));
   }
 }
 
