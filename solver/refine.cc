@@ -98,6 +98,8 @@ ceres::Solver::Summary SolveByCeres(const Problem& problem, Storey storey, int m
   options.linear_solver_type = system.empty() || own.empty() ? ceres::DENSE_QR : ceres::DENSE_SCHUR;
   options.linear_solver_ordering = ordering;
   options.max_num_iterations = max_iterations;
+  // Starts are near: Gauss-Newton at once, and Levenberg-Marquardt only where that fails.
+  options.initial_trust_region_radius = 1e8;
   options.function_tolerance = options.parameter_tolerance = 1e-12;
   options.gradient_tolerance = 1e-14;
   options.logging_type = ceres::SILENT;

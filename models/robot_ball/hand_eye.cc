@@ -66,11 +66,17 @@ MatrixXd StationRows(const RobotData& data, const Station& station) {
 }
 
 MatrixXd AllRows(const RobotData& data) {
-  MatrixXd all(0, kColumns);
+  std::vector<MatrixXd> of_stations;
+  Index rows = 0;
   for (const Station& station : data.stations) {
-    const MatrixXd rows = StationRows(data, station);
-    all.conservativeResize(all.rows() + rows.rows(), Eigen::NoChange);
-    all.bottomRows(rows.rows()) = rows;
+    of_stations.push_back(StationRows(data, station));
+    rows += of_stations.back().rows();
+  }
+  MatrixXd all(rows, kColumns);
+  rows = 0;
+  for (const MatrixXd& each : of_stations) {
+    all.middleRows(rows, each.rows()) = each;
+    rows += each.rows();
   }
   return all;
 }
