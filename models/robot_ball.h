@@ -2,6 +2,7 @@
 #pragma once
 #include <ceres/rotation.h>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <string>
 #include <vector>
 #include "models/parts/chain.h"
@@ -91,19 +92,25 @@ void RobotBall::Residual(const Target& station, const View& pose, const Seen<T>&
     const SeenBall& seen = pose.balls[b];
     const T* error = q.q + FirstOfSpheres() + 3 * seen.sphere;
     const Eigen::Vector3d& k = spheres_[seen.sphere].centre;
-    T along[3], from_scanner[3];  // base
-    for (int i = 0; i < 3; ++i) {
-      const Eigen::Matrix3d& reference = station.base_from_artifact.linear();
-      along[i] = reference(i, 0) * (k[0] + error[0]) + reference(i, 1) * (k[1] + error[1]) +
-                 reference(i, 2) * (k[2] + error[2]);
-    }
+    const Eigen::Matrix3d& reference = station.base_from_artifact.linear();
+    const Eigen::Vector3d nominal = reference * k;
+    T from_scanner[3];  // base
     for (int i = 0; i < 3; ++i)
-      from_scanner[i] = turn[i] * along[0] + turn[3 + i] * along[1] + turn[6 + i] * along[2] +
+      from_scanner[i] = turn[i] * nominal[0] + turn[3 + i] * nominal[1] + turn[6 + i] * nominal[2] +
                         station.base_from_artifact.translation()[i] + q[kArtifact + i] - scanner[9 + i];
+    if (!std::all_of(error, error + 3, IsZero<T>)) {
+      T along[3];
+      for (int i = 0; i < 3; ++i)
+        along[i] = reference(i, 0) * error[0] + reference(i, 1) * error[1] + reference(i, 2) * error[2];
+      for (int i = 0; i < 3; ++i)
+        from_scanner[i] += turn[i] * along[0] + turn[3 + i] * along[1] + turn[6 + i] * along[2];
+    }
+    const T noise[3] = {q(b, kBall), q(b, kBall + 1), q(b, kBall + 2)};
+    const bool has_noise = !std::all_of(noise, noise + 3, IsZero<T>);
     for (int c = 0; c < 3; ++c) {
       r[c] = seen.centre[c] - (scanner[3 * c] * from_scanner[0] + scanner[3 * c + 1] * from_scanner[1] +
                                scanner[3 * c + 2] * from_scanner[2]);
-      for (int j = 0; j < 3; ++j) r[c] -= seen.spread(c, j) * q(b, kBall + j);
+      for (int j = 0; has_noise && j < 3; ++j) r[c] -= seen.spread(c, j) * noise[j];
     }
   }
 }

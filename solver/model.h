@@ -25,6 +25,18 @@ bool IsZero(const T& x) {
   else return x.a == 0 && x.v.isZero(0);
 }
 
+// No derivative: what multiplies it is a plain number.
+template <class T>
+bool IsConstant(const T& x) {
+  if constexpr (std::is_same_v<T, double>) return true;
+  else return x.v.isZero(0);
+}
+template <class T>
+double ValueOf(const T& x) {
+  if constexpr (std::is_same_v<T, double>) return x;
+  else return x.a;
+}
+
 // A model declares one list of quantities and one residual. Residuals are signed, smooth, pure, and written in the
 // frame where the noise lives.
 template <class M>

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 #include <vector>
-#include "solver/problem.h"
+#include "solver/model.h"
 
 namespace scancal {
 
@@ -37,14 +37,37 @@ ChainFrame<T> MakeChainFrame(const Eigen::Isometry3d& pose) {
 }
 
 // Turns columns u and v by the angle about the third: u c + v s, v c - u s.
-template <class T>
-void TurnColumns(const T& angle, T u[3], T v[3]) {
+template <class T, class Angle>
+void TurnColumns(const Angle& angle, T u[3], T v[3]) {
   using std::cos, std::sin;
-  const T c = cos(angle), s = sin(angle);
+  const Angle c = cos(angle), s = sin(angle);
   for (int i = 0; i < 3; ++i) {
     const T old = u[i];
     u[i] = old * c + v[i] * s;
     v[i] = v[i] * c - old * s;
+  }
+}
+
+// Few numbers of a chain have a derivative at a time; the others need no dual arithmetic.
+template <class T>
+void TurnBy(const T& angle, T u[3], T v[3]) {
+  if (IsZero(angle)) return;
+  if (IsConstant(angle)) {
+    TurnColumns(ValueOf(angle), u, v);
+  } else {
+    TurnColumns(angle, u, v);
+  }
+}
+
+template <class T>
+void Shift(const T axis[3], const T& by, T p[3]) {
+  const bool constant = IsConstant(by);
+  for (int i = 0; i < 3; ++i) {
+    if (constant) {
+      p[i] += axis[i] * ValueOf(by);
+    } else {
+      p[i] += axis[i] * by;
+    }
   }
 }
 
@@ -53,11 +76,11 @@ template <class T>
 void MoveAlong(const std::vector<Link>& links, const double* joints, const T* errors, ChainFrame<T>* frame) {
   for (size_t k = 0; k < links.size(); ++k, errors += kLinkNumbers) {
     const Link& link = links[k];
-    TurnColumns(T(joints[k] + link.theta + errors[0]), frame->x, frame->y);
-    const T d = link.d + errors[1], a = link.a + errors[2];
-    for (int i = 0; i < 3; ++i) frame->p[i] += frame->z[i] * d + frame->x[i] * a;
-    TurnColumns(T(link.alpha + errors[3]), frame->y, frame->z);
-    TurnColumns(T(link.beta + errors[4]), frame->z, frame->x);
+    TurnBy(T(joints[k] + link.theta + errors[0]), frame->x, frame->y);
+    Shift(frame->z, T(link.d + errors[1]), frame->p);
+    Shift(frame->x, T(link.a + errors[2]), frame->p);
+    TurnBy(T(link.alpha + errors[3]), frame->y, frame->z);
+    TurnBy(T(link.beta + errors[4]), frame->z, frame->x);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 #include <chrono>
 #include <numbers>
+#include "solver/weigh.h"
 #include "tests/bench/comparisons.h"
 
 namespace scancal::bench {
@@ -22,10 +23,10 @@ void CompareMonteCarlo(Table* table) {
   const std::vector<Placement> placements = Compress(SimulateTurntable(scene));
   const Start start = SearchStart(placements);
   Problem problem = BuildProblem(placements, start, Turntable::Residuals::kDepth);
-  problem.WeighEqually(scene.noise_y);
   Consider(Turntable::kNoiseY, scene.noise_y, &problem);
   Consider(Turntable::kEncoderJitter, scene.encoder_jitter, &problem);
   const Estimate from = StartOf(problem, start);
+  Weigh(&problem, from);
   const Fit fit = Refine(problem, from);
   const Linearization linear = Linearize(problem, fit.estimate, Storey::kViews);
 
