@@ -8,7 +8,8 @@ namespace scancal {
 
 Turntable::Turntable(Residuals residuals) : residuals_(residuals) {
   using enum Scope;
-  const auto declare = [&](const char* name, Unit unit, Scope scope, Role role, bool in_nodes, const char* source = "") {
+  const auto declare = [&](const char* name, Unit unit, Scope scope, Role role, bool in_nodes,
+                           const char* source = "") {
     quantities_.push_back({name, unit, scope, role, 0, 0, in_nodes, source});
   };
   declare("M", Unit::kMm, kSystem, Role::kEstimate, true);

@@ -99,7 +99,8 @@ std::string CheckText(const LengthCheck& check) {
 }
 
 bool HasDeclared(const Calibration& c) {
-  return std::any_of(c.budget.begin(), c.budget.end(), [](const BudgetLine& line) { return line.type == 'B' && !line.random; });
+  return std::any_of(c.budget.begin(), c.budget.end(),
+                     [](const BudgetLine& line) { return line.type == 'B' && !line.random; });
 }
 
 std::string CellText(const ComparisonCell& cell, int digits) {

@@ -12,7 +12,7 @@ namespace scancal {
 namespace {
 
 constexpr double kCoverage = 0.95;
-constexpr double kKnown_dof = 1e9;  // as good as infinitely many
+constexpr double kKnown_dof = 1e9;     // as good as infinitely many
 constexpr double kRounding_mm = 1e-9;  // a pure error below this is none
 
 std::vector<double> Plain(const Eigen::VectorXd& x) { return {x.data(), x.data() + x.size()}; }
@@ -145,10 +145,9 @@ Calibration Summarize(const Solution& solution, const PureError& pure_error) {
   AddTargets(solution, pure_error, &result);
   if (!solution.variances) result.budget.front().u = result.sigma;
   // Views of many rows tell the variances better than their mere number.
-  const double noise_dof =
-      solution.variances && headline.dof.size() > 0
-          ? std::max(clustered.dof, std::min(headline.dof.minCoeff(), kKnown_dof))
-          : clustered.dof;
+  const double noise_dof = solution.variances && headline.dof.size() > 0
+                               ? std::max(clustered.dof, std::min(headline.dof.minCoeff(), kKnown_dof))
+                               : clustered.dof;
   if (solution.variances) AddMisfits(solution, noise_dof, &result);
   for (Eigen::Index t = 0; t < jackknife.estimates.rows(); ++t)
     result.jackknife.push_back(Plain(jackknife.estimates.row(t).transpose()));

@@ -9,6 +9,7 @@
 #include "models/robot_ball/robot_fit.h"
 #include "models/robot_ball/robot_scanner.h"
 #include "models/robot_ball/spacing.h"
+#include "models/robot_ball/virtual_point.h"
 #include "models/robot_ball/zhou_2025.h"
 
 namespace scancal {
@@ -69,7 +70,7 @@ Result<Comparison> RobotScanner::Compare() const {
     comparison.columns.push_back({std::to_string(k + 1), 2});
   comparison.columns.push_back({"rms of balls/mm"});
   comparison.columns.push_back({"s", 2});
-  const std::vector<Method> methods = {{"nominal robot", [&] { return InitialHandEye(data); }},
+  const std::vector<Method> methods = {{"nominal robot, first hand-eye", [&] { return VirtualPointHandEye(data); }},
                                        {"Ren 2012, single sphere", [&] { return Ren2012(data); }},
                                        {"Mu 2017, distances", [&] { return Mu2017(data); }},
                                        {"Zhou 2025, corrected distances", [&] { return Zhou2025(data); }},

@@ -6,6 +6,7 @@
 #include "models/robot_ball/hand_eye.h"
 #include "models/robot_ball/robot_fit.h"
 #include "models/robot_ball/spacing.h"
+#include "models/robot_ball/virtual_point.h"
 
 namespace scancal {
 namespace {
@@ -61,7 +62,8 @@ Result<Calibration> RobotScanner::Calibrate(const RefineChoice& choice) const {
   result.residual = "ball centre";
   result.seconds = seconds.count();
   AddGeometry(fit, &result);
-  AddCheck(data, hand_eye, fit.Setup(), &result);
+  SCANCAL_ASSIGN_OR_RETURN(const RobotSetup before, VirtualPointHandEye(data));
+  AddCheck(data, before, fit.Setup(), &result);
   result.warnings.insert(result.warnings.begin(), declaration_.warnings.begin(), declaration_.warnings.end());
   return result;
 }

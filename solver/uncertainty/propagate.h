@@ -12,8 +12,7 @@ struct Contribution {
   Scope scope = Scope::kSystem;  // the widest of its quantities
   bool prior = false;            // of an estimated quantity
   Eigen::MatrixXd covariance;    // system x system
-  Eigen::VectorXd
-      sensitivity;  // d parameter / d quantity, for a source that is one quantity of the system; else empty
+  Eigen::VectorXd sensitivity;  // d parameter / d quantity, for a source that is one quantity of the system; else empty
 };
 
 struct Budget {

@@ -95,8 +95,8 @@ TEST_F(BadDeclarationTest, MillimetresDeclaredAsMicrometres) {
 
 TEST_F(BadDeclarationTest, AnotherModelIsUnknown) {
   Replace(yaml_, "model: turntable", "model: turntabel");
-  ExpectRefused(
-      AllOf(StartsWith(yaml_.string() + ":2:8: model: found \"turntabel\", expected"), HasSubstr("expected one of: turntable, robot-ball")));
+  ExpectRefused(AllOf(StartsWith(yaml_.string() + ":2:8: model: found \"turntabel\", expected"),
+                      HasSubstr("expected one of: turntable, robot-ball")));
 }
 
 }  // namespace

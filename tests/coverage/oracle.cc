@@ -60,7 +60,8 @@ std::vector<Oracle::Bend> Oracle::BendsOf(const Plate& plate, const std::vector<
       const auto k = static_cast<size_t>(i);
       const Eigen::Array2d scaled = (at(profile, k) - seen.center()).array() / (seen.sizes() / 2).array();
       line.row(i) << 1, profile.z[k];
-      modes.row(i) = Eigen::Map<const Eigen::RowVectorXd>(FormModesAt(scaled[0], scaled[1], seen.sizes()[0] / seen.sizes()[1]).data(), kFormModes);
+      modes.row(i) = Eigen::Map<const Eigen::RowVectorXd>(
+          FormModesAt(scaled[0], scaled[1], seen.sizes()[0] / seen.sizes()[1]).data(), kFormModes);
     }
     const Eigen::MatrixXd fitted = line.colPivHouseholderQr().solve(modes);
     bends.push_back({fitted.row(0), fitted.row(1)});

@@ -34,7 +34,8 @@ TEST_P(Coverage, StatedIntervalsHoldTheTruth) {
   EXPECT_LE(tally.unreliable, 1.0 / kSets);
 }
 
-INSTANTIATE_TEST_SUITE_P(, Coverage, ::testing::Values("white noise", "jitter 20 arcsec", "line correlation 40 points"));
+INSTANTIATE_TEST_SUITE_P(, Coverage,
+                         ::testing::Values("white noise", "jitter 20 arcsec", "line correlation 40 points"));
 
 }  // namespace
 }  // namespace scancal::coverage

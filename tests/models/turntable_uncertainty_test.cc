@@ -32,7 +32,8 @@ Study Repeat(TurntableScene scene, Turntable::Residuals residuals, int trials) {
     study.naive += NaiveCovariance(problem, solution.linear).matrix.diagonal() / trials;
     study.clustered += ClusteredCovariance(problem, solution.linear).matrix.diagonal() / trials;
     study.jackknife += LeaveOneTargetOut(problem, solution.fit).covariance.diagonal() / trials;
-    study.expected_jackknife += ExpectLeaveOneTargetOut(problem, solution.fit.estimate, solution.linear).variance / trials;
+    study.expected_jackknife +=
+        ExpectLeaveOneTargetOut(problem, solution.fit.estimate, solution.linear).variance / trials;
     PureError pure;
     for (const SimulatedPlacement& placement : SimulateTurntable(scene)) {
       for (const Profile& profile : Compress(placement)) {
