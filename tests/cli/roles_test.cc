@@ -157,6 +157,26 @@ TEST_F(RolesTest, DeclaredInfluencesMakeTheBudgetAndTheFootnote) {
   EXPECT_THAT(Refine(data_).out, Not(HasSubstr("not a traceable uncertainty")));
 }
 
+TEST_F(RolesTest, DeclaredNoiseAloneIsNotTraceable) {
+  Append(data_ / "dataset.yaml", "influences: {noise_y: 0.05, line_correlation: 1}\n");
+  EXPECT_THAT(Refine(data_).out, HasSubstr("not a traceable uncertainty"));
+}
+
+TEST_F(RolesTest, NoNoiseIsADeclarationThatResidualsMayContradict) {
+  Simulate(Path("noisy"), {"--profiles=60", "--points=60", "--encoder_jitter=0.01", "--line_correlation=10"});
+  Append(Path("noisy") / "dataset.yaml", "influences: {encoder_jitter: 0, line_correlation: 1}\n");
+  EXPECT_THAT(Sentences(Refined(Path("noisy")), "warnings"),
+              AllOf(HasSubstr("encoder_jitter: declared with u = 0, but the residuals show"),
+                    HasSubstr("line_correlation (offset): declared with u = 0, but the residuals show")));
+  EXPECT_EQ(Sentences(With("influences: {encoder_jitter: 0, line_correlation: 1}"), "warnings"), "");
+}
+
+TEST_F(RolesTest, APriorOfWhatPlanesDoNotSeeLeavesNumbers) {
+  const Json result = With("influences: {scale_y: {estimate: 0, u: 1e-4}}");
+  EXPECT_NEAR(UOf(result, "scale_y"), 1e-4, 1e-9);
+  for (const Json& line : result["budget"]) EXPECT_TRUE(line["share"]["scale_y"].is_number()) << line;
+}
+
 TEST_F(RolesTest, EveryInfluenceHasItsLineOfTheBudget) {
   const Json result = With(
       "influences: {noise_y: 0.1, noise_z: 0.1, line_correlation: 3, encoder_jitter: 0.01, encoder_cos1: 0.002, "
