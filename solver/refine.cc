@@ -114,10 +114,12 @@ bool AllFinite(const Estimate& x) {
          std::all_of(x.targets.begin(), x.targets.end(), [](const auto& own) { return own.allFinite(); });
 }
 
-// Largest component of the step against 1e-12 of the quantity's own size (of one unit, where it is smaller).
-bool IsTiny(const Estimate& step, const Estimate& x) {
-  const auto tiny = [](const Eigen::VectorXd& d, const Eigen::VectorXd& of) {
-    return (d.array().abs() <= 1e-12 * of.array().abs().max(1.0)).all();
+constexpr double kTiny = 1e-12, kRounding = 1e-10;
+
+// Largest component of the step against this part of the quantity's own size (of one unit, where it is smaller).
+bool IsTiny(const Estimate& step, const Estimate& x, double part) {
+  const auto tiny = [&](const Eigen::VectorXd& d, const Eigen::VectorXd& of) {
+    return (d.array().abs() <= part * of.array().abs().max(1.0)).all();
   };
   if (step.system.size()) return tiny(step.system, x.system);  // the targets' own follow exactly
   for (size_t t = 0; t < x.targets.size(); ++t)
@@ -150,7 +152,7 @@ Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& o
     }
     // Length over noise is the relative offset of Bates and Watts (1981): no quantity moves by more of its uncertainty.
     const double length = StepLength(linear), noise = std::sqrt(linear.cost / std::max(1.0, problem.Count()));
-    const bool tiny = IsTiny(step, fit.estimate);
+    const bool tiny = IsTiny(step, fit.estimate, kTiny);
     fit.converged = tiny || length <= kNegligible * noise;
     // A step that is no shorter than the last is rounding; a tiny one is worth its time if it gains two digits.
     if (length <= kSettled * noise || (fit.converged && length >= (tiny ? 0.01 : 1) * last)) break;
@@ -160,7 +162,11 @@ Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& o
     Linearization there = Linearize(problem, next, storey);
     ++fit.iterations;
     // Large residuals may keep Gauss-Newton from settling better than Levenberg-Marquardt did.
-    if (!(there.cost <= linear.cost * (1 + 1e-9) + 1e-300)) break;
+    // Residuals without noise end in rounding: then the step, however small, makes nothing better.
+    if (!(there.cost <= linear.cost * (1 + 1e-9) + 1e-300)) {
+      fit.converged |= IsTiny(step, fit.estimate, kRounding);
+      break;
+    }
     fit.estimate = std::move(next);
     linear = std::move(there);
   }

@@ -14,7 +14,8 @@ struct Fit {
   Estimate estimate;
   double cost = 0;         // sum of squares of all weighted residuals, priors among them
   int iterations = 0;      // Ceres' and the polishing ones
-  bool converged = false;  // the last step is below 1e-12 of every system quantity, or below 1e-3 of its uncertainty
+  bool converged = false;  // the last step is below 1e-12 of every system quantity, below 1e-3 of its uncertainty, or
+                           // rounding: below 1e-10 of every system quantity and of no use
   std::string message;     // why not
 };
 

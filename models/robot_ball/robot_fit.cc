@@ -21,8 +21,9 @@ std::vector<double> SystemValues(const Quantities& quantities, const RobotSetup&
 Error NotDetermined(const Observability& observability) {
   std::string names;
   for (const std::string& name : observability.undetermined) names += (names.empty() ? "" : ", ") + name;
-  return Error{"the data do not determine " + names +
-               ": hold one of them, give them priors, or add poses that turn about more directions"};
+  return Error{names + (observability.undetermined.size() > 1 ? ": are" : ": is") +
+               " not determined by these data: hold one of them, give them priors, or add poses that turn about more "
+               "directions"};
 }
 
 }  // namespace

@@ -1,0 +1,157 @@
+// The robot with a scanner passes the contract.
+#include <algorithm>
+#include "models/robot_ball/hand_eye.h"
+#include "models/robot_ball/robot_data_json.h"
+#include "models/robot_ball/robot_fit.h"
+#include "models/robot_ball/simulate.h"
+#include "solver/random.h"
+#include "solver/weigh.h"
+#include "tests/model_contract.h"
+#include "tests/robot_study/declared.h"
+
+namespace scancal {
+namespace {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+struct RobotCase {
+  static constexpr double kNoise = 0.035;
+  static constexpr double kTruthTolerance = 1e-8;  // mm, rad
+  static constexpr const char* kRefusedName = "theta_1";
+  static constexpr double kPriorU = 0.05;
+  static constexpr int kPriorOf = RobotBall::kLinks + kLinkNumbers + 2;  // a_2
+
+  // Errors only of what is estimated by default: the truth is then exact, whatever the gauge.
+  static RobotScene Scene(const ContractOptions& options) {
+    RobotScene scene;
+    scene.stations = 4;
+    scene.poses = 6;
+    scene.translations = scene.check_positions = 0;
+    scene.ball_noise = kNoise * options.noise;
+    scene.repeatability = options.influences ? 0.04 : 0;
+    scene.u_spheres = options.influences ? 0.01 : 0;
+    scene.noise_seed = options.seed;
+    const RobotBall model(scene.links, {});
+    for (size_t k = 0; k < scene.link_errors.size(); ++k) {
+      const auto estimated = [&](int e) {
+        return model.quantities()[RobotBall::kLinks + kLinkNumbers * k + static_cast<size_t>(e)].role ==
+               Role::kEstimate;
+      };
+      Link& error = scene.link_errors[k];
+      error = {estimated(0) ? error.theta : 0, estimated(1) ? error.d : 0, estimated(2) ? error.a : 0,
+               estimated(3) ? error.alpha : 0, estimated(4) ? error.beta : 0};
+    }
+    return scene;
+  }
+
+  static Eigen::VectorXd Truth(const Quantities& quantities, const RobotSetup& truth) {
+    std::vector<double> all(quantities.size());
+    Vector6d::Map(&all[RobotBall::kHandEye]) = NumbersOf(truth.flange_from_scanner);
+    size_t at = RobotBall::kLinks;
+    for (const Link& error : truth.link_errors)
+      for (const double number : {error.theta, error.d, error.a, error.alpha, error.beta}) all[at++] = number;
+    std::vector<double> estimated;
+    for (size_t k = 0; k < quantities.size(); ++k)
+      if (quantities[k].scope == Scope::kSystem && quantities[k].role == Role::kEstimate) estimated.push_back(all[k]);
+    return Eigen::VectorXd::Map(estimated.data(), std::ssize(estimated));
+  }
+
+  // A turn by nearly pi has two rotation vectors: the one that the truth is written in.
+  static void WriteLike(const Eigen::VectorXd& truth, Eigen::VectorXd* system) {
+    const Eigen::Vector3d turn = system->segment<3>(3), other = turn * (1 - 2 * M_PI / turn.norm());
+    const Eigen::Vector3d like = truth.segment<3>(3);
+    if ((other - like).norm() < (turn - like).norm()) system->segment<3>(3) = other;
+  }
+
+  static ContractData Make(const ContractOptions& options) {
+    const RobotScene scene = Scene(options);
+    SimulatedRobot robot = SimulateRobot(scene);
+    RobotBall model = robot_study::DeclaredModel(
+        robot.data, scene, options.influences ? robot_study::Noise::kDeclared : robot_study::Noise::kEstimated);
+    ContractData data;
+    data.truth = Truth(model.quantities(), robot.truth);
+    if (options.influences) {
+      Quantity& prior = model.quantity(kPriorOf);
+      prior.u = kPriorU;
+      prior.value = robot.truth.link_errors[1].a + prior.u * Random(options.seed, 1000).Normal();
+    }
+    if (options.reversed) {
+      std::reverse(robot.data.stations.begin(), robot.data.stations.end());
+      for (Station& station : robot.data.stations) {
+        std::reverse(station.views.begin(), station.views.end());
+        for (RobotBall::View& pose : station.views) std::reverse(pose.balls.begin(), pose.balls.end());
+      }
+    }
+    // From the truth moved a little: the same for any order.
+    RobotSetup near = robot.truth;
+    near.flange_from_scanner.translate(Eigen::Vector3d(0.3, -0.2, 0.1));
+    const Result<std::vector<Station>> stations = StationsAt(robot.data, near);
+    EXPECT_TRUE(stations.ok());
+    for (const Station& station : *stations)
+      for (const RobotBall::View& pose : station.views) data.count += 3.0 * static_cast<double>(pose.balls.size());
+    data.problem = MakeProblem(std::make_shared<const RobotBall>(model), *stations);
+    data.start = NominalStart(data.problem);
+    data.start.system.head<6>() = NumbersOf(near.flange_from_scanner);
+    WriteLike(data.truth, &data.start.system);
+    if (options.influences) Weigh(&data.problem, data.start);
+    return data;
+  }
+
+  // The data as calibration.json keeps them, to the last digit.
+  static Eigen::VectorXd RoundTrip(double noise) {
+    const SimulatedRobot robot = SimulateRobot(Scene({noise, 1, true, false, false}));
+    RobotDeclaration written;
+    written.data = robot.data;
+    written.u_of_spheres.resize(robot.data.spheres.size());
+    Result<RobotDeclaration> read = RobotDataFromJson(Json::parse(RobotDataToJson(written).dump()), "some.json");
+    EXPECT_TRUE(read.ok()) << read.error().message;
+    read->data.links = robot.data.links;  // of dataset.yaml
+    const RobotBall model(read->data.links, read->data.spheres);
+    const Result<RobotSetup> start = InitialHandEye(read->data);
+    const Result<RobotFit> fit = FitRobot(read->data, model, *start);
+    EXPECT_TRUE(fit.ok()) << fit.error().message;
+    const Eigen::VectorXd truth = Truth(model.quantities(), robot.truth);
+    Eigen::VectorXd estimate = fit->solution.fit.estimate.system;
+    WriteLike(truth, &estimate);
+    return estimate - truth;
+  }
+
+  static std::string Refusal() {
+    const SimulatedRobot robot = SimulateRobot(Scene({}));
+    RobotBall model(robot.data.links, robot.data.spheres);
+    model.quantity(RobotBall::kLinks).role = Role::kEstimate;  // the base itself
+    const Result<RobotFit> fit = FitRobot(robot.data, model, robot.truth);
+    return fit.ok() ? "" : fit.error().message;
+  }
+};
+
+INSTANTIATE_TYPED_TEST_SUITE_P(Robot, ModelContract, RobotCase);
+
+TEST(RobotBallTest, SixJointsLeaveTwentyFourNumbersAndNoMore) {
+  const RobotScene scene = RobotCase::Scene({});
+  const SimulatedRobot robot = SimulateRobot(scene);
+  RobotBall model(robot.data.links, robot.data.spheres);
+  const auto estimated = [&] {
+    return std::count_if(model.quantities().begin(), model.quantities().end(), [](const Quantity& quantity) {
+      return quantity.scope == Scope::kSystem && quantity.role == Role::kEstimate;
+    });
+  };
+  EXPECT_EQ(estimated(), 24);
+  for (size_t link = 0; link < 6; ++link)  // all 31: beta where the next axis is parallel
+    for (int e = 0; e < kLinkNumbers; ++e)
+      if (e < 4 || link == 1)
+        model.quantity(RobotBall::kLinks + kLinkNumbers * static_cast<int>(link) + e).role = Role::kEstimate;
+  EXPECT_EQ(estimated(), 31);
+  for (const bool at_truth : {true, false}) {  // and off the solution
+    RobotSetup setup = robot.truth;
+    if (!at_truth) setup.flange_from_scanner.translate(Eigen::Vector3d(5, -3, 2));
+    const Problem problem = MakeProblem(std::make_shared<const RobotBall>(model), *StationsAt(robot.data, setup));
+    Estimate at = NominalStart(problem);
+    at.system.head<6>() = NumbersOf(setup.flange_from_scanner);
+    const Observability seen = Observe(problem, Linearize(problem, at, Storey::kViews));
+    EXPECT_EQ((seen.singular.array() > 1e-9).count(), 24) << seen.singular.transpose();
+  }
+}
+
+}  // namespace
+}  // namespace scancal
