@@ -72,7 +72,14 @@ class Parameters {
   std::vector<double> values_;
 };
 
-ceres::Solver::Summary SolveByCeres(const Problem& problem, Storey storey, int max_iterations, Estimate* x) {
+ceres::LinearSolverType SchurOf(const Problem& problem, Elimination elimination) {
+  constexpr size_t kManyTargets = 100;
+  const bool sparse = elimination == Elimination::kSparse ||
+                      (elimination == Elimination::kByTargets && problem.targets.size() > kManyTargets);
+  return sparse ? ceres::SPARSE_SCHUR : ceres::DENSE_SCHUR;
+}
+
+ceres::Solver::Summary SolveByCeres(const Problem& problem, Storey storey, const RefineOptions& choice, Estimate* x) {
   const std::vector<int> system = problem.With({Scope::kSystem}, Role::kEstimate);
   const std::vector<int> own = problem.With({Scope::kTarget}, Role::kEstimate);
   Parameters at(*x);
@@ -95,9 +102,10 @@ ceres::Solver::Summary SolveByCeres(const Problem& problem, Storey storey, int m
     ordering->AddElementToGroup(at.System(), own.empty() ? 0 : 1);
   }
   ceres::Solver::Options options;
-  options.linear_solver_type = system.empty() || own.empty() ? ceres::DENSE_QR : ceres::DENSE_SCHUR;
+  options.linear_solver_type = system.empty() || own.empty() ? ceres::DENSE_QR : SchurOf(problem, choice.elimination);
+  options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
   options.linear_solver_ordering = ordering;
-  options.max_num_iterations = max_iterations;
+  options.max_num_iterations = choice.max_iterations;
   // Starts are near: Gauss-Newton at once, and Levenberg-Marquardt only where that fails.
   options.initial_trust_region_radius = 1e8;
   options.function_tolerance = options.parameter_tolerance = 1e-12;
@@ -136,7 +144,7 @@ Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& o
   const Storey storey = FitStorey(problem);
   Fit fit;
   fit.estimate = start;
-  const auto summary = SolveByCeres(problem, storey, options.max_iterations, &fit.estimate);
+  const auto summary = SolveByCeres(problem, storey, options, &fit.estimate);
   fit.iterations = static_cast<int>(summary.iterations.size());
   if (!summary.IsSolutionUsable()) {
     fit.message = summary.message;

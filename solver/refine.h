@@ -6,8 +6,12 @@
 
 namespace scancal {
 
+// How the step is found once the targets' own quantities are eliminated (Schur): both give the same.
+enum class Elimination { kDense, kSparse, kByTargets };  // kByTargets: sparse (SuiteSparse) beyond a hundred targets
+
 struct RefineOptions {
   int max_iterations = 100;
+  Elimination elimination = Elimination::kByTargets;
 };
 
 struct Fit {

@@ -127,6 +127,18 @@ struct RobotCase {
 
 INSTANTIATE_TYPED_TEST_SUITE_P(Robot, ModelContract, RobotCase);
 
+TEST(RobotBallTest, DenseAndSparseEliminationAgree) {
+  ContractOptions options;
+  options.influences = true;
+  const ContractData data = RobotCase::Make(options);
+  const Fit dense = Refine(data.problem, data.start, {100, Elimination::kDense}),
+            sparse = Refine(data.problem, data.start, {100, Elimination::kSparse});
+  ASSERT_TRUE(dense.converged && sparse.converged);
+  const Eigen::VectorXd u =
+      InverseInformation(Linearize(data.problem, dense.estimate, Storey::kViews)).diagonal().cwiseSqrt();
+  EXPECT_LT(((dense.estimate.system - sparse.estimate.system).array() / u.array()).abs().maxCoeff(), 1e-8);
+}
+
 TEST(RobotBallTest, SixJointsLeaveTwentyFourNumbersAndNoMore) {
   const RobotScene scene = RobotCase::Scene({});
   const SimulatedRobot robot = SimulateRobot(scene);
