@@ -6,6 +6,7 @@
 #include "models/robot_ball/hand_eye.h"
 #include "models/robot_ball/robot_fit.h"
 #include "models/robot_ball/spacing.h"
+#include "models/robot_ball/verdicts.h"
 #include "models/robot_ball/virtual_point.h"
 
 namespace scancal {
@@ -64,6 +65,7 @@ Result<Calibration> RobotScanner::Calibrate(const RefineChoice& choice) const {
   AddGeometry(fit, &result);
   SCANCAL_ASSIGN_OR_RETURN(const RobotSetup before, VirtualPointHandEye(data));
   AddCheck(data, before, fit.Setup(), &result);
+  JudgeRobot(data, fit, &result);
   result.warnings.insert(result.warnings.begin(), declaration_.warnings.begin(), declaration_.warnings.end());
   return result;
 }

@@ -7,7 +7,7 @@
 namespace scancal {
 namespace {
 
-constexpr std::ptrdiff_t kMostLeftOut = 200;
+constexpr std::ptrdiff_t kMostLeftOut = 40;
 
 // J~' b u of everything that was considered: of target scope per target, system x quantities; of system scope stacked
 // over the targets, (system targets) x quantities.

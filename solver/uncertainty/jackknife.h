@@ -7,7 +7,7 @@ namespace scancal {
 
 struct Jackknife {
   Eigen::MatrixXd estimates;  // targets x system: the fit without that target; empty with fewer than two targets, and
-                              // with more than 200: none of them moves anything, and time goes with their square
+                              // with more than 40: none of them moves anything, and time goes with their square
   Eigen::MatrixXd
       covariance;  // (m - 1)/m sum (x_i - mean)(x_i - mean)', m - 1 degrees of freedom: a diagnostic, no headline
   bool converged = true;

@@ -23,6 +23,11 @@ std::vector<Parameter*> Estimated(Calibration* result) {
 }
 
 void AddBootstrap(const Solution& solution, Calibration* result) {
+  // With so many views the clustered figure is as good, and this one takes a minute.
+  constexpr size_t kMostViews = 10'000;
+  size_t views = 0;
+  for (const Target& target : solution.problem.targets) views += target.views.size();
+  if (views > kMostViews) return;
   const Bootstrap bootstrap = ResampleViews(solution.problem, solution.linear, kReplicates, kBootstrapSeed);
   if (bootstrap.covariance.size() == 0) return;
   Eigen::Index k = 0;
