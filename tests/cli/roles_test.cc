@@ -171,6 +171,21 @@ TEST_F(RolesTest, NoNoiseIsADeclarationThatResidualsMayContradict) {
   EXPECT_EQ(Sentences(With("influences: {encoder_jitter: 0, line_correlation: 1}"), "warnings"), "");
 }
 
+TEST_F(RolesTest, WhatWasSimulatedIsDeclared) {
+  Simulate(Path("declared"),
+           {"--profiles=20", "--points=20", "--form=0.005", "--one_plate", "--line_correlation=5", "--declare"});
+  EXPECT_THAT(ReadWhole(Path("declared") / "dataset.yaml"),
+              HasSubstr("influences: {noise_y: 0.05, form: 0.005, line_correlation: 5, one_plate: yes}"));
+}
+
+TEST_F(RolesTest, WhatIsConsideredIsNoCorrelationOfNeighbours) {
+  Simulate(Path("tilted"), {"--tilt_x=0.5", "--noise=0.01"});
+  Append(Path("tilted") / "dataset.yaml", "parameters: {tilt_x: {consider: 0, u: 0.5}}\n");
+  const Json result = Refined(Path("tilted"));
+  EXPECT_GT(result["neighbours"], 0.2);
+  EXPECT_THAT(Sentences(result, "warnings"), Not(HasSubstr("neighbouring views")));
+}
+
 TEST_F(RolesTest, APriorOfWhatPlanesDoNotSeeLeavesNumbers) {
   const Json result = With("influences: {scale_y: {estimate: 0, u: 1e-4}}");
   EXPECT_NEAR(UOf(result, "scale_y"), 1e-4, 1e-9);

@@ -163,6 +163,14 @@ TEST(CalibrationJsonTest, DamagedUncertaintiesAreErrors) {
   }
 }
 
+TEST(CalibrationJsonTest, CarriesCorrelationAndCoverage) {
+  Calibration c = WithBudgetAndVolume();
+  c.covariance << 4, -3, -3, 9;
+  const Json json = ToJson(c);
+  EXPECT_EQ(json["correlation"], Json::parse("[[1, -0.5], [-0.5, 1]]"));
+  EXPECT_EQ(json["coverage_probability"], 0.95);
+}
+
 TEST(CalibrationJsonTest, UncertaintiesThatCannotBeAreErrors) {
   for (const char* key : {"u", "U", "dof"}) {
     Json json = ToJson(WithBudgetAndVolume());
