@@ -1,0 +1,46 @@
+"""calibration.json -> one page that is filed; started by `scancal report`. It reads that file and nothing else."""
+import argparse
+import sys
+from pathlib import Path
+
+from calibration import Complaint, read_calibration
+from language import LANGUAGES, Language
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="scancal report")
+    parser.add_argument("calibration", type=Path)
+    parser.add_argument("--out", type=Path, help="HTML page")
+    parser.add_argument("--pdf", type=Path, help="the same page, printed on A4")
+    parser.add_argument("--dcc", type=Path, help="Digital Calibration Certificate, XML")
+    parser.add_argument("--previous", type=Path, help="an earlier calibration.json: as found, as left")
+    parser.add_argument("--language", choices=LANGUAGES, default="en")
+    return parser.parse_args()
+
+
+def main() -> int:
+    choice = arguments()
+    try:
+        calibration = read_calibration(choice.calibration)
+        previous = read_calibration(choice.previous) if choice.previous else None
+        language = Language(choice.language)
+        if choice.out or choice.pdf:
+            from page import render_page  # Matplotlib takes half a second, and a certificate needs none
+            from output import write_whole
+            html = render_page(calibration, previous, language)
+            if choice.out:
+                write_whole(choice.out, html.encode())
+            if choice.pdf:
+                from pdf import print_page
+                print_page(html, choice.pdf)
+        if choice.dcc:
+            from dcc import write_certificate
+            write_certificate(calibration, language, choice.dcc)
+    except Complaint as complaint:
+        print(f"scancal: {complaint}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

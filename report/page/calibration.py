@@ -1,0 +1,96 @@
+"""calibration.json as the report reads it: its keys as they are, its tables as columns."""
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+
+FORMAT_VERSION = 1
+
+
+class Complaint(Exception):
+    """What is wrong with the input, and what to do, in one sentence."""
+
+
+class Table:
+    """{"columns": [...], "units": [...], "names": [...], "rows": [[...]]}: a column by its name, null as nan."""
+
+    def __init__(self, json_table: dict | None):
+        json_table = json_table or {}
+        self.columns: list[str] = json_table.get("columns", [])
+        self.units: list[str] = json_table.get("units", [])
+        self.names: list[str] = json_table.get("names", [])  # of the rows
+        rows = [[math.nan if number is None else number for number in row] for row in json_table.get("rows", [])]
+        self.rows = np.array(rows, dtype=float).reshape(len(rows), len(self.columns))
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __contains__(self, column: str) -> bool:
+        return column in self.columns
+
+    def __getitem__(self, column: str) -> np.ndarray:
+        return self.rows[:, self.columns.index(column)]
+
+
+class Calibration(dict):
+    """The file's own keys: c["status"]; below, what more than one section of the report asks."""
+
+    file: Path
+
+    @property
+    def is_turntable(self) -> bool:
+        return self["model"] == "turntable"
+
+    @property
+    def estimated(self) -> list[dict]:
+        """Parameters with an uncertainty, in the order of "covariance"."""
+        return [parameter for parameter in self["parameters"] if parameter["role"] == "estimate"]
+
+    def parameter(self, name: str) -> dict | None:
+        return next((parameter for parameter in self["parameters"] if parameter["name"] == name), None)
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """n x n, of the estimated parameters; mm and rad."""
+        n = len(self.estimated)
+        return np.array(self.get("covariance", []), dtype=float).reshape(n, n)
+
+    @property
+    def correlation(self) -> np.ndarray:
+        n = len(self.estimated)
+        return np.array(self.get("correlation", []), dtype=float).reshape(n, n)
+
+    def table(self, *path: str) -> Table:
+        """The table at that path of keys; empty if this calibration has none."""
+        found = self
+        for key in path:
+            found = (found or {}).get(key)
+        return Table(found)
+
+    @property
+    def traceable(self) -> bool:
+        """Something systematic was declared (type B): else u is of repeatability and fit only."""
+        return any(line["type"] == "B" and not line.get("random") for line in self.get("budget", []))
+
+
+def read_calibration(file: Path) -> Calibration:
+    """Raises Complaint for what is no calibration.json of a version that is known."""
+    try:
+        found = json.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise Complaint(f"{file}: {error.strerror}; expected a calibration.json of scancal refine") from None
+    except json.JSONDecodeError as error:
+        raise Complaint(f"{file}:{error.lineno}:{error.colno}: {error.msg}; expected a whole calibration.json") from None
+    except UnicodeDecodeError:
+        raise Complaint(f"{file}: not UTF-8 text; expected a calibration.json of scancal refine") from None
+    if not isinstance(found, dict) or "scancal" not in found:
+        raise Complaint(f'{file}: expected a format version, "scancal": 1; is it a calibration.json?')
+    if found["scancal"] != FORMAT_VERSION:
+        raise Complaint(f"{file}: format version {found['scancal']}, expected {FORMAT_VERSION}; use a newer scancal")
+    for key, kind in (("model", str), ("parameters", list), ("status", str)):
+        if not isinstance(found.get(key), kind):
+            raise Complaint(f'{file}: expected "{key}"; is it a calibration.json?')
+    calibration = Calibration(found)
+    calibration.file = file
+    return calibration

@@ -1,0 +1,64 @@
+"""The page: sections in their order, figures drawn as the templates ask for them."""
+import json
+import sys
+from pathlib import Path
+
+import jinja2
+from markupsafe import Markup
+
+import figures
+import notation
+import style
+from calibration import Calibration
+from fonts import font_faces
+from language import Language
+
+TEMPLATES = Path(__file__).parent / "templates"
+
+# The order of the page. A section whose template renders to nothing (it has no data) takes no number.
+SECTIONS = ["verdict", "result", "links", "budget", "comparison", "residuals", "surface", "correlation",
+            "leave_one_out", "monte_carlo", "scene", "coverage_of_poses", "lengths", "volume", "considered", "inputs"]
+
+
+class Figures:
+    """figure("budget") in a template: the drawing of figures/budget.py, numbered, with its caption."""
+
+    def __init__(self, calibration: Calibration, language: Language):
+        self._calibration, self._language, self._drawn = calibration, language, 0
+
+    def __call__(self, name: str, **captions: str) -> Markup:
+        """captions: what the caption of the figure needs beside its words."""
+        if sys.stderr.isatty():
+            print(f"\r\033[Kreport: {name}", end="", file=sys.stderr, flush=True)
+        drawing = figures.draw(name, self._calibration, self._language)
+        if drawing is None:
+            return Markup("")
+        self._drawn += 1
+        title = self._language(f"figure.{name}.title")
+        svg = style.to_svg(drawing, name.replace("_", "-"), title, self._language)
+        caption = Markup.escape(self._language(f"figure.{name}.caption", **captions))
+        number = Markup.escape(self._language("figure.number", number=self._drawn))
+        return Markup(f'<figure id="figure-{name}">{svg}<figcaption><b>{number}</b> {caption}</figcaption></figure>')
+
+
+def render_page(calibration: Calibration, previous: Calibration | None, language: Language) -> str:
+    """The whole HTML page: nothing in it is loaded from elsewhere, and the same input gives the same bytes."""
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True,
+                                     undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    for rule in (notation.significant, notation.concise, notation.to_last_digit_of, notation.count, notation.dof,
+                 notation.percent):
+        environment.filters[rule.__name__] = _in(language, rule)
+    environment.globals |= {"t": language, "c": calibration, "previous": previous,
+                            "figure": Figures(calibration, language), "json": json}
+    rendered = [(name, environment.get_template(f"sections/{name}.html").render().strip())
+                for name in SECTIONS if (TEMPLATES / "sections" / f"{name}.html").exists()]
+    html = environment.get_template("page.html").render(
+        sections=[(name, Markup(body)) for name, body in rendered if body],
+        fonts=Markup(font_faces()), css=Markup((TEMPLATES / "page.css").read_text(encoding="utf-8")))
+    if sys.stderr.isatty():
+        print("\r\033[K", end="", file=sys.stderr, flush=True)
+    return html
+
+
+def _in(language: Language, rule):
+    return lambda *values: language.number(rule(*values))
