@@ -1,4 +1,5 @@
 #include "models/robot_ball.h"
+#include <Eigen/QR>
 
 namespace scancal {
 namespace {
@@ -20,7 +21,43 @@ RobotBall::RobotBall(std::vector<Link> links, std::vector<Sphere> spheres)
   declare("ball", 3, kPoint, Role::kEstimate, "ball");                   // variance
   DeclareLinks(links_.size(), &quantities_);
   SetDefaultLinkRoles(links_, kLinks, &quantities_);
+  for (Quantity& quantity : quantities_) quantity.in_nodes = true;
+  for (const Sphere& sphere : spheres_) length_ = std::max(length_, sphere.centre.norm());
   for (const Sphere& sphere : spheres_) declare("sphere_" + sphere.name, 3, kSystem, Role::kHold, "artifact");
+}
+
+std::vector<StandIns<RobotBall::View>> RobotBall::MakeNodes(const Target& station) const {
+  constexpr double kRankTolerance = 1e-9;
+  std::vector<StandIns<View>> result;
+  for (const View& pose : station.views) {
+    // Pivoting takes balls far apart first.
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(Features(pose.balls));
+    qr.setThreshold(kRankTolerance);
+    View node = pose;
+    node.balls.clear();
+    for (Eigen::Index k = 0; k < qr.rank(); ++k)
+      node.balls.emplace_back().sphere = pose.balls[qr.colsPermutation().indices()[k]].sphere;
+    result.push_back({{std::move(node)}, 1});
+  }
+  return result;
+}
+
+Eigen::MatrixXd RobotBall::Interpolate(const std::vector<View>& nodes, const View& pose) const {
+  const Eigen::MatrixXd by_feature = Features(nodes.front().balls).colPivHouseholderQr().solve(Features(pose.balls));
+  const Eigen::Index balls = by_feature.cols(), columns = 3 * by_feature.rows();
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * balls, columns + 1);
+  for (Eigen::Index b = 0; b < balls; ++b) {
+    for (Eigen::Index k = 0; k < by_feature.rows(); ++k)
+      result.block<3, 3>(3 * b, 3 * k).diagonal().setConstant(by_feature(k, b));
+    result.col(columns).segment<3>(3 * b) = pose.balls[b].centre;
+  }
+  return result;
+}
+
+Eigen::MatrixXd RobotBall::Features(const std::vector<SeenBall>& balls) const {
+  Eigen::MatrixXd features(4, std::ssize(balls));
+  for (Eigen::Index b = 0; b < features.cols(); ++b) features.col(b) << spheres_[balls[b].sphere].centre, length_;
+  return features;
 }
 
 Eigen::Isometry3d PoseOf(const Eigen::Matrix<double, 6, 1>& numbers) {

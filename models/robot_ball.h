@@ -60,13 +60,20 @@ class RobotBall {
   int FirstOfSpheres() const { return kLinks + kLinkNumbers * static_cast<int>(links_.size()); }
   int Points(const View& view) const { return static_cast<int>(view.balls.size()); }
   double Count(const View& view) const { return 3.0 * Points(view); }
+  // A rotation and a translation of k: four balls of a pose that span space (three in a plane) stand for all of them,
+  // as exactly as six numbers stand for a profile. Their own centres are zero; the measured ones are the constant.
+  std::vector<StandIns<View>> MakeNodes(const Target& station) const;
+  Eigen::MatrixXd Interpolate(const std::vector<View>& nodes, const View& pose) const;
 
   template <class T>
   void Residual(const Target& station, const View& pose, const Seen<T>& q, T* r) const;
 
  private:
+  Eigen::MatrixXd Features(const std::vector<SeenBall>& balls) const;  // 4 x balls: (k, length_)
+
   std::vector<Link> links_;
   std::vector<Sphere> spheres_;
+  double length_ = 1;  // mm, of the artifact: on a par with its coordinates
   Quantities quantities_;
 };
 

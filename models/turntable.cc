@@ -36,7 +36,7 @@ Turntable::Turntable(Residuals residuals) : residuals_(residuals) {
     declare(("form_" + std::to_string(k + 1)).c_str(), Unit::kMm, kTarget, Role::kHold, false, "form");
 }
 
-std::vector<Turntable::View> Turntable::Nodes(const Target& target) const {
+std::vector<StandIns<Turntable::View>> Turntable::MakeNodes(const Target& target) const {
   if (residuals_ == Residuals::kDepth || target.views.empty()) return {};
   double first = target.views.front().alpha, last = first, weight = 0, y = 0, z = 0, yy = 0, zz = 0;
   for (const View& view : target.views) {
@@ -60,7 +60,9 @@ std::vector<Turntable::View> Turntable::Nodes(const Target& target) const {
   const double spread_y = std::max(1.0, std::sqrt(std::max(0.0, yy / weight - y * y)));
   const double spread_z = std::max(1.0, std::sqrt(std::max(0.0, zz / weight - z * z)));
   const std::vector<PseudoPoint> points = {{1, y, z}, {1, y + spread_y, z}, {1, y, z + spread_z}};
-  return {{first, points, 0, false}, {first + sweep / 2, points, 0, false}, {first + sweep, points, 0, false}};
+  const std::vector<View> nodes = {
+      {first, points, 0, false}, {first + sweep / 2, points, 0, false}, {first + sweep, points, 0, false}};
+  return {{nodes, target.views.size()}};
 }
 
 Eigen::MatrixXd Turntable::Interpolate(const std::vector<View>& nodes, const View& view) const {

@@ -94,7 +94,7 @@ class Turntable {
   // The node storey: point-to-plane residuals are linear in the nine features {1, y, z} x {1, cos a, sin a}, so nine
   // points in general position, three on each of three profiles, give all others. None for the depth residual, nor
   // without a sweep.
-  std::vector<View> Nodes(const Target& target) const;
+  std::vector<StandIns<View>> MakeNodes(const Target& target) const;
   Eigen::MatrixXd Interpolate(const std::vector<View>& nodes, const View& view) const;
 
   // The unit normal and distance of a placement at its estimated normal_1, normal_2, distance.

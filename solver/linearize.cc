@@ -61,10 +61,9 @@ Linearization Linearize(const Problem& problem, const Estimate& at, Storey store
   TriangularFactor factor(static_cast<int>(n) + 1);
   for (size_t t = 0; t <= problem.targets.size(); ++t) {
     const bool priors = t == problem.targets.size();
-    const std::span<const Block> blocks = priors ? std::span<const Block>(problem.priors)
-                                          : storey == Storey::kNodes
-                                              ? std::span<const Block>(&problem.targets[t].nodes, 1)
-                                              : std::span<const Block>(problem.targets[t].views);
+    const std::span<const Block> blocks = priors                     ? problem.priors
+                                          : storey == Storey::kNodes ? problem.targets[t].nodes
+                                                                     : problem.targets[t].views;
     LinearTarget& target = linear.targets.emplace_back();
     if (blocks.empty()) continue;
     Eigen::MatrixXd jacobian;

@@ -52,11 +52,18 @@ concept ScannerModel = requires(const M m, const typename M::Target t, const typ
              r);  // template <class T> void Residual(const Target&, const View&, const Seen<T>&, T* rows) const
 };
 
-// Optional: a second, coarser storey of compression (see Target::nodes). No nodes: none for this target.
+// Views made up by a model that stand for the next few of a target's.
+template <class View>
+struct StandIns {
+  std::vector<View> nodes;
+  size_t views = 0;
+};
+
+// Optional: a second, coarser storey of compression (see Target::nodes). None: not for this target.
 template <class M>
 concept HasNodes = ScannerModel<M> && requires(const M m, const typename M::Target t, const typename M::View v) {
-  { m.Nodes(t) } -> std::same_as<std::vector<typename M::View>>;
-  { m.Interpolate(m.Nodes(t), v) } -> std::convertible_to<Eigen::MatrixXd>;  // rows(v) = this * rows(nodes)
+  { m.MakeNodes(t) } -> std::same_as<std::vector<StandIns<typename M::View>>>;
+  { m.Interpolate(std::vector{v}, v) } -> std::convertible_to<Eigen::MatrixXd>;  // as in Target::interpolation
 };
 
 // Residuals of some views of one target, differentiated by dual numbers of a fixed width.
@@ -122,10 +129,13 @@ Problem MakeProblem(const std::shared_ptr<const M>& model, std::vector<typename 
     for (const auto& view : shared->views)
       target.views.push_back({std::make_shared<ModelRows<M>>(model, shared, std::vector{view}), 1, {}, {}, {}});
     if constexpr (HasNodes<M>) {
-      const auto nodes = model->Nodes(*shared);
-      if (nodes.empty()) continue;
-      target.nodes.rows = std::make_shared<ModelRows<M>>(model, shared, nodes);
-      for (const auto& view : shared->views) target.interpolation.push_back(model->Interpolate(nodes, view));
+      size_t view = 0;
+      for (const auto& [nodes, views] : model->MakeNodes(*shared)) {
+        target.nodes.push_back({std::make_shared<ModelRows<M>>(model, shared, nodes), 1, {}, {}, {}});
+        auto& interpolation = target.interpolation.emplace_back();
+        for (const size_t end = view + views; view < end; ++view)
+          interpolation.push_back(model->Interpolate(nodes, shared->views[view]));
+      }
     }
   }
   problem.AddPriors();

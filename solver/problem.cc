@@ -63,10 +63,14 @@ Eigen::MatrixXd Block::WeightedFromLeft(const Eigen::Ref<const Eigen::MatrixXd>&
 }
 
 void Target::MixNodes() {
-  if (!nodes.rows) return;
-  TriangularFactor factor(nodes.rows->size());
-  for (size_t v = 0; v < interpolation.size(); ++v) factor.Add(views[v].Weighted(interpolation[v]));
-  nodes.mix = factor.R();
+  size_t view = 0;
+  for (size_t k = 0; k < nodes.size(); ++k) {
+    const Eigen::Index size = nodes[k].rows->size(), columns = interpolation[k].front().cols();
+    TriangularFactor factor(static_cast<int>(columns));
+    for (const Eigen::MatrixXd& by : interpolation[k]) factor.Add(views[view++].Weighted(by));
+    nodes[k].mix = factor.R().leftCols(size);
+    if (columns > size) nodes[k].offset = factor.R().col(size);
+  }
 }
 
 void Problem::AddPriors() { AddPriors(With({Scope::kSystem, Scope::kTarget}, Role::kEstimate)); }
@@ -107,7 +111,9 @@ std::vector<int> Problem::With(std::initializer_list<Scope> scopes, Role role) c
 bool Problem::NodesSuffice() const {
   // A target's own prior is a view that no node stands for.
   const bool stored = std::all_of(targets.begin(), targets.end(), [](const Target& t) {
-    return t.nodes.rows && t.views.size() == t.interpolation.size();
+    size_t views = 0;
+    for (const auto& of_views : t.interpolation) views += of_views.size();
+    return !t.nodes.empty() && t.views.size() == views;
   });
   return stored && std::all_of(quantities.begin(), quantities.end(), [](const Quantity& q) {
            return q.in_nodes || (q.role != Role::kEstimate && q.value == 0) || q.scope == Scope::kView ||

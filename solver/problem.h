@@ -66,15 +66,15 @@ struct Block {
   Eigen::MatrixXd WeightedFromLeft(const Eigen::Ref<const Eigen::MatrixXd>& left) const;  // weight * left * mix
 };
 
-// The views of one target share its quantities. Where residuals are linear in a few known features, all views also
-// equal a mix of a few nodes: rows(view) = interpolation[view] * rows(nodes), hence sum |rows(view)|^2 = |nodes.mix
-// rows(nodes)|^2.
+// The views of one target share its quantities. Where residuals are linear in a few known features, the rows of some
+// views in a row also equal a mix of those of a few nodes and a constant: rows(view) = interpolation (rows(nodes), 1),
+// hence sum |rows(view)|^2 = |mix rows(nodes) + offset|^2 at every q. Without a constant there is no last column.
 struct Target {
   std::string name;
-  std::vector<Block> views;                    // profile storey; the priors of the target's own quantities come last
-  Block nodes;                                 // node storey; rows == nullptr if the model has none
-  std::vector<Eigen::MatrixXd> interpolation;  // per view that is no prior
-  void MixNodes();                             // after the views' weights or mixes have changed
+  std::vector<Block> views;  // profile storey; the priors of the target's own quantities come last
+  std::vector<Block> nodes;  // node storey; empty if the model has none
+  std::vector<std::vector<Eigen::MatrixXd>> interpolation;  // per block of nodes, of each view that it stands for
+  void MixNodes();                                          // after the views' weights or mixes have changed
 };
 
 // Owns all it refers to.

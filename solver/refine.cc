@@ -87,8 +87,7 @@ ceres::Solver::Summary SolveByCeres(const Problem& problem, Storey storey, const
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   for (size_t t = 0; t < problem.targets.size(); ++t) {
     const Target& target = problem.targets[t];
-    const std::span<const Block> blocks =
-        storey == Storey::kNodes ? std::span<const Block>(&target.nodes, 1) : std::span<const Block>(target.views);
+    const std::span<const Block> blocks = storey == Storey::kNodes ? target.nodes : target.views;
     std::vector<double*> parameters;
     if (!system.empty()) parameters.push_back(at.System());
     if (!own.empty()) parameters.push_back(at.Own(t));

@@ -139,6 +139,36 @@ TEST(RobotBallTest, DenseAndSparseEliminationAgree) {
   EXPECT_LT(((dense.estimate.system - sparse.estimate.system).array() / u.array()).abs().maxCoeff(), 1e-8);
 }
 
+// Poses that see few balls and poses that see all, all in a plane, and correlated noise.
+TEST(RobotBallTest, FourBallsOfAPoseStandForAll) {
+  for (const bool flat : {false, true}) {
+    RobotScene scene = RobotCase::Scene({});
+    SimulatedRobot robot = SimulateRobot(scene);
+    if (flat)
+      for (RobotBall::Sphere& sphere : robot.data.spheres) sphere.centre[2] = 0.1 * sphere.centre[0] - 3;
+    robot.data.stations[0].views[0].balls.resize(1);
+    robot.data.stations[0].views[1].balls.resize(2);
+    const RobotBall model = robot_study::DeclaredModel(robot.data, scene, robot_study::Noise::kDeclared);
+    RobotSetup near = robot.truth;
+    near.flange_from_scanner.translate(Eigen::Vector3d(0.3, -0.2, 0.1));
+    const Result<std::vector<Station>> stations = StationsAt(robot.data, near);
+    ASSERT_TRUE(stations.ok()) << stations.error().message;
+    Problem problem = MakeProblem(std::make_shared<const RobotBall>(model), *stations);
+    Estimate at = NominalStart(problem);
+    at.system.head<6>() = NumbersOf(near.flange_from_scanner);
+    at.targets[1][4] = 0.01;
+    Weigh(&problem, at);
+    ASSERT_TRUE(problem.NodesSuffice());
+    const Block& of_all = problem.targets[2].nodes[0];
+    EXPECT_EQ(of_all.rows->points(), std::min(flat ? 3 : 4, problem.targets[2].views[0].rows->points()));
+    const Linearization views = Linearize(problem, at, Storey::kViews), nodes = Linearize(problem, at, Storey::kNodes);
+    EXPECT_NEAR(nodes.cost, views.cost, 1e-11 * views.cost);
+    EXPECT_LT((GaussNewtonStep(nodes).system - GaussNewtonStep(views).system).norm(),
+              1e-9 * GaussNewtonStep(views).system.norm());
+    EXPECT_LT((InverseInformation(nodes) - InverseInformation(views)).norm(), 1e-8 * InverseInformation(views).norm());
+  }
+}
+
 TEST(RobotBallTest, SixJointsLeaveTwentyFourNumbersAndNoMore) {
   const RobotScene scene = RobotCase::Scene({});
   const SimulatedRobot robot = SimulateRobot(scene);
