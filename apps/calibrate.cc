@@ -7,9 +7,12 @@
 #include "io/json_file.h"
 #include "io/output_file.h"
 #include "report/calibration_json.h"
+#include "report/page.h"
 #include "report/text.h"
 
 DEFINE_string(out, "", "folder or file to write");
+DEFINE_bool(report, false, "write report.html beside calibration.json, as scancal report does");
+DECLARE_string(language);
 
 namespace scancal {
 namespace {
@@ -17,6 +20,7 @@ namespace {
 constexpr int kFewestTrials = 100, kMostTrials = 10'000'000;
 
 Result<Calibration> Calibrated(const std::vector<std::string>& arguments, const RefineChoice& choice) {
+  SCANCAL_RETURN_IF_ERROR(CheckLanguage(FLAGS_language));
   SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, LoadAndEcho(arguments));
   const std::filesystem::path file = std::filesystem::path(FLAGS_out) / "calibration.json";
   SCANCAL_RETURN_IF_ERROR(OutputFile::Create(file));  // told before the work, not after it
@@ -36,6 +40,14 @@ int CalibrateAndReport(const std::vector<std::string>& arguments, const RefineCh
   const Result<Calibration> calibration = Calibrated(arguments, choice);
   if (!calibration.ok()) return Complain(calibration.error().message);
   std::printf("%s", ToText(*calibration).c_str());
+  if (FLAGS_report) {
+    std::fflush(stdout);
+    const std::filesystem::path folder = FLAGS_out;
+    const Result<bool> written =
+        WritePage(folder / "calibration.json", {folder / "report.html", {}, {}, {}, FLAGS_language});
+    if (!written.ok()) return Complain(written.error().message);
+    if (!*written) return kBadInput;
+  }
   return calibration->ok() ? kTrusted : kUnreliable;
 }
 

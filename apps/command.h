@@ -19,7 +19,7 @@ struct Command {
 };
 
 extern const Command kRefineCommand, kMonteCarloCommand, kCompareCommand, kSimulateCommand, kTransformCommand,
-    kPropagateCommand, kSelftestCommand;
+    kPropagateCommand, kReportCommand, kSelftestCommand;
 
 // Exit codes.
 inline constexpr int kTrusted = 0, kBadInput = 1, kUnreliable = 2;

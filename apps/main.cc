@@ -14,7 +14,7 @@ namespace scancal {
 namespace {
 
 const Command* const kCommands[] = {&kRefineCommand,    &kMonteCarloCommand, &kCompareCommand, &kSimulateCommand,
-                                    &kTransformCommand, &kPropagateCommand,  &kSelftestCommand};
+                                    &kTransformCommand, &kPropagateCommand,  &kReportCommand,  &kSelftestCommand};
 std::string command_line;
 
 void PrintOverview() {

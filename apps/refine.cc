@@ -33,6 +33,8 @@ const Command kRefineCommand = {
     "DATASET",
     "calibrate: search, joint refinement, uncertainty; writes calibration.json, which can stand for DATASET later",
     {{"out", "folder for calibration.json (default: the current one)"},
+     {"report"},
+     {"language"},
      {"residual"},
      {"weights"},
      {"max_iterations"},
