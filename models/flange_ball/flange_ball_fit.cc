@@ -6,8 +6,6 @@
 namespace scancal {
 namespace {
 
-constexpr double kLeastSigma_mm = 1e-9;  // noiseless data need a scale too
-
 double CountIn(const FlangeBall::Target& tool, int socket) {
   return static_cast<double>(std::count_if(tool.views.begin(), tool.views.end(),
                                            [&](const FlangeBall::View& view) { return view.socket == socket; }));

@@ -5,8 +5,6 @@
 namespace scancal {
 namespace {
 
-constexpr double kLeastSigma_mm = 1e-9;  // noiseless data need a scale too
-
 // One value per system quantity.
 std::vector<double> SystemValues(const Quantities& quantities, const RobotSetup& setup) {
   std::vector<double> values;

@@ -34,8 +34,8 @@ void AddGeometry(const RobotFit& fit, Calibration* result) {
 
 void AddCheck(const RobotData& data, const RobotSetup& before, const RobotSetup& after, Calibration* result) {
   for (const CheckLength& length : data.check) result->check.names.push_back(length.name);
-  result->check.before = SpacingErrors(data, before).errors;
-  result->check.after = SpacingErrors(data, after).errors;
+  result->check.before = SpacingErrors(data, before);
+  result->check.after = SpacingErrors(data, after);
 }
 
 }  // namespace
