@@ -1,5 +1,4 @@
 #include "report/calibration_json.h"
-#include <algorithm>
 #include <cmath>
 #include "report/montecarlo_json.h"
 #include "report/uncertainty_json.h"
@@ -113,12 +112,8 @@ Json FrameJson(const Eigen::Matrix4d& frame) {
 }
 
 Json ErrorsJson(const std::vector<double>& errors) {
-  double largest = 0, sum = 0;
-  for (const double error : errors) {
-    largest = std::max(largest, std::abs(error));
-    sum += std::abs(error);
-  }
-  return {{"max", largest}, {"mean", sum / static_cast<double>(errors.size())}, {"errors", errors}};
+  const ErrorSize size = SizeOfErrors(errors);
+  return {{"max", size.max}, {"mean", size.mean}, {"errors", errors}};
 }
 
 // Models without such a check or frames have no such keys.

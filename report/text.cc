@@ -86,13 +86,8 @@ std::string GridText(const GridMinimum& grid) {
 std::string CheckText(const LengthCheck& check) {
   if (check.after.empty()) return "";
   const auto figures = [](const std::vector<double>& errors) {
-    double largest = 0, sum = 0;
-    for (const double error : errors) {
-      largest = std::max(largest, std::abs(error));
-      sum += std::abs(error);
-    }
-    return Significant(largest, 3) + " mm at most, " + Significant(sum / static_cast<double>(errors.size()), 3) +
-           " mm on average";
+    const ErrorSize size = SizeOfErrors(errors);
+    return Significant(size.max, 3) + " mm at most, " + Significant(size.mean, 3) + " mm on average";
   };
   return "error of " + Count(static_cast<double>(check.after.size())) +
          " known lengths that took no part: " + figures(check.after) + "; before: " + figures(check.before) + "\n";

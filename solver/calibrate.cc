@@ -15,8 +15,6 @@ constexpr double kCoverage = 0.95;
 constexpr double kKnown_dof = 1e9;     // as good as infinitely many
 constexpr double kRounding_mm = 1e-9;  // a pure error below this is none
 
-std::vector<double> Plain(const Eigen::VectorXd& x) { return {x.data(), x.data() + x.size()}; }
-
 double DataSumOfSquares(const Solution& solution, size_t target) {  // without weights
   const std::vector<double> values = Values(solution.problem, solution.fit.estimate, target);
   double sum = 0;

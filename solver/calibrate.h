@@ -9,6 +9,8 @@
 
 namespace scancal {
 
+inline constexpr double kLeastSigma_mm = 1e-9;  // noiseless data need a scale too
+
 struct PureError {  // what repeats within a view, from the data alone
   double sum_of_squares = 0;
   double dof = 0;

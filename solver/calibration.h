@@ -9,6 +9,8 @@
 
 namespace scancal {
 
+std::vector<double> Plain(const Eigen::VectorXd& x);  // as a Calibration keeps it
+
 struct Parameter {
   std::string name;
   Unit unit = Unit::kMm;
@@ -69,6 +71,11 @@ struct LengthCheck {
   std::vector<std::string> names;
   std::vector<double> before, after;  // as the nominal instrument shows them, and the calibrated one
 };
+
+struct ErrorSize {  // of absolute values; 0 of none
+  double max = 0, mean = 0;
+};
+ErrorSize SizeOfErrors(const std::vector<double>& errors);
 
 struct LackOfFit {  // of everything within views against everything between them: noise that is not white shows, too
   double pure_error_sigma = 0;              // mm

@@ -6,8 +6,6 @@
 namespace scancal {
 namespace {
 
-constexpr double kLeastSigma_mm = 1e-9;  // noiseless data need a scale too
-
 double CountIn(const FlangeBall::Target& tool, int socket) {
   return static_cast<double>(std::count_if(tool.views.begin(), tool.views.end(),
                                            [&](const FlangeBall::View& view) { return view.socket == socket; }));
@@ -71,13 +69,8 @@ Solution FitFlangeBall(const FlangeBall& model, std::vector<FlangeBall::Target> 
 
 RobotWithBall RobotOf(const std::vector<Link>& nominal, const Solution& solution) {
   const std::vector<double> values = Values(solution.problem, solution.fit.estimate, 0);
-  RobotWithBall robot{nominal, Eigen::Vector3d::Map(&values[FlangeBall::kBall])};
-  for (size_t k = 0; k < nominal.size(); ++k) {
-    const double* error = &values[FlangeBall::kLinks + kLinkNumbers * k];
-    Link& link = robot.links[k];
-    for (double* number : {&link.theta, &link.d, &link.a, &link.alpha, &link.beta}) *number += *error++;
-  }
-  return robot;
+  const auto errors = Eigen::VectorXd::Map(&values[FlangeBall::kLinks], kLinkNumbers * std::ssize(nominal));
+  return {WithErrors(nominal, LinksOf(errors)), Eigen::Vector3d::Map(&values[FlangeBall::kBall])};
 }
 
 }  // namespace scancal

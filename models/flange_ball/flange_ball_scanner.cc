@@ -8,8 +8,6 @@
 namespace scancal {
 namespace {
 
-constexpr double kLeastSigma_mm = 1e-9;  // noiseless data need a scale too
-
 double Poses(const std::vector<FlangeBall::Target>& tools) {
   double poses = 0;
   for (const FlangeBall::Target& tool : tools) poses += static_cast<double>(tool.views.size());

@@ -1,30 +1,14 @@
 // Where a calibrated robot has its ball.
 #include "models/flange_ball/flange_ball_scanner.h"
+#include "models/parts/calibrated_values.h"
 
 namespace scancal {
 namespace {
 
-// An Error where a parameter of the result is missing.
 Result<RobotWithBall> CalibratedRobot(const std::vector<Link>& nominal, const Calibration& calibration) {
-  RobotWithBall robot{nominal, {}};
-  std::string missing;
-  const auto value = [&](const std::string& name) {
-    const Parameter* parameter = calibration.Find(name);
-    if (!parameter) missing = name;
-    return parameter ? parameter->value : 0.0;
-  };
-  robot.ball = {value("ball_x"), value("ball_y"), value("ball_z")};
-  for (size_t k = 0; k < nominal.size(); ++k) {
-    const std::string number = std::to_string(k + 1);
-    Link& link = robot.links[k];
-    link.theta += value("theta_" + number);
-    link.d += value("d_" + number);
-    link.a += value("a_" + number);
-    link.alpha += value("alpha_" + number);
-    link.beta += value("beta_" + number);
-  }
-  if (!missing.empty()) return Error{"the calibration has no parameter " + missing + ": is it of another robot?"};
-  return robot;
+  SCANCAL_ASSIGN_OR_RETURN(const Eigen::VectorXd ball, ValuesOf(calibration, {"ball_x", "ball_y", "ball_z"}));
+  SCANCAL_ASSIGN_OR_RETURN(const std::vector<Link> errors, LinkErrorsOf(calibration, nominal.size()));
+  return RobotWithBall{WithErrors(nominal, errors), ball};
 }
 
 }  // namespace

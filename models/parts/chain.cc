@@ -3,6 +3,26 @@
 
 namespace scancal {
 
+Eigen::VectorXd NumbersOf(const std::vector<Link>& links) {
+  Eigen::VectorXd numbers(kLinkNumbers * std::ssize(links));
+  Eigen::Index k = 0;
+  for (const Link& link : links)
+    for (const double number : {link.theta, link.d, link.a, link.alpha, link.beta}) numbers[k++] = number;
+  return numbers;
+}
+
+std::vector<Link> LinksOf(const Eigen::VectorXd& numbers) {
+  CHECK_EQ(numbers.size() % kLinkNumbers, 0);
+  std::vector<Link> links;
+  for (Eigen::Index k = 0; k < numbers.size(); k += kLinkNumbers)
+    links.push_back({numbers[k], numbers[k + 1], numbers[k + 2], numbers[k + 3], numbers[k + 4]});
+  return links;
+}
+
+std::vector<Link> WithErrors(const std::vector<Link>& nominal, const std::vector<Link>& errors) {
+  return errors.empty() ? nominal : LinksOf(NumbersOf(nominal) + NumbersOf(errors));
+}
+
 Eigen::Isometry3d BaseFromFlange(const std::vector<Link>& links, const std::vector<double>& joints) {
   CHECK_EQ(links.size(), joints.size());
   ChainFrame<double> frame = MakeChainFrame<double>(Eigen::Isometry3d::Identity());

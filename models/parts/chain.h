@@ -18,6 +18,13 @@ struct Link {
 };
 inline constexpr int kLinkNumbers = 5;  // in the order of Link
 
+// All numbers of all links, kLinkNumbers a link, and back.
+Eigen::VectorXd NumbersOf(const std::vector<Link>& links);
+std::vector<Link> LinksOf(const Eigen::VectorXd& numbers);
+
+// Nominal links and their errors, added; no errors: as they are.
+std::vector<Link> WithErrors(const std::vector<Link>& nominal, const std::vector<Link>& errors);
+
 // A rotation by its columns and a translation, of numbers or of dual numbers.
 template <class T>
 struct ChainFrame {

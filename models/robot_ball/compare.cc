@@ -51,9 +51,10 @@ ComparisonRow RowOf(const RobotData& data, const Method& method) {
     return row;
   }
   if (!data.check.empty()) {
-    const Spacing spacing = SpacingErrors(data, *setup);
-    row.cells = {{spacing.max}, {spacing.mean}};
-    for (size_t k = 0; k < spacing.errors.size() && k < kMostPositions; ++k) row.cells.push_back({spacing.errors[k]});
+    const std::vector<double> errors = SpacingErrors(data, *setup);
+    const ErrorSize size = SizeOfErrors(errors);
+    row.cells = {{size.max}, {size.mean}};
+    for (size_t k = 0; k < errors.size() && k < kMostPositions; ++k) row.cells.push_back({errors[k]});
   }
   row.cells.push_back({*misclosure});
   row.cells.push_back({seconds.count()});

@@ -169,19 +169,11 @@ class Distances {
 VectorXd AsNumbers(const RobotData& data, const RobotSetup& setup) {
   VectorXd q = VectorXd::Zero(6 + kLinkNumbers * std::ssize(data.links));
   q.head<6>() = NumbersOf(setup.flange_from_scanner);
-  for (Index k = 0; k < std::ssize(setup.link_errors); ++k) {
-    const Link& error = setup.link_errors[k];
-    q.segment<kLinkNumbers>(6 + kLinkNumbers * k) << error.theta, error.d, error.a, error.alpha, error.beta;
-  }
+  q.segment(6, kLinkNumbers * std::ssize(setup.link_errors)) = NumbersOf(setup.link_errors);
   return q;
 }
 
-RobotSetup AsSetup(const VectorXd& q) {
-  RobotSetup setup{PoseOf(q.head<6>()), {}};
-  for (Index k = 6; k < q.size(); k += kLinkNumbers)
-    setup.link_errors.push_back({q[k], q[k + 1], q[k + 2], q[k + 3], q[k + 4]});
-  return setup;
-}
+RobotSetup AsSetup(const VectorXd& q) { return {PoseOf(q.head<6>()), LinksOf(q.tail(q.size() - 6))}; }
 
 }  // namespace
 

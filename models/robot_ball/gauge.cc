@@ -9,11 +9,10 @@ Gauged InDefaultGauge(const std::vector<Link>& nominal, const RobotSetup& truth)
   Gauged gauged{truth, Eigen::Isometry3d::Identity()};
   std::vector<Link>& errors = gauged.setup.link_errors;
   const Link& last = nominal.back();
-  const Link moved = {last.theta + errors.back().theta, last.d + errors.back().d, last.a + errors.back().a,
-                      last.alpha + errors.back().alpha, last.beta + errors.back().beta};
   // link(q) = Rz(q) link(0)
-  gauged.setup.flange_from_scanner =
-      BaseFromFlange({last}, {0}).inverse() * BaseFromFlange({moved}, {0}) * truth.flange_from_scanner;
+  gauged.setup.flange_from_scanner = BaseFromFlange({last}, {0}).inverse() *
+                                     BaseFromFlange(WithErrors({last}, {errors.back()}), {0}) *
+                                     truth.flange_from_scanner;
   errors.back() = {};
   gauged.base_from_true_base = BaseFromFlange({{errors.front().theta, errors.front().d, 0, 0, 0}}, {0}).inverse();
   errors.front().theta = errors.front().d = 0;

@@ -143,16 +143,8 @@ bool OnALine(const MatrixXd& points) {
 }  // namespace
 
 Isometry3d BaseFromScanner(const RobotData& data, const RobotSetup& setup, const RobotBall::View& view) {
-  std::vector<Link> links = data.links;
-  CHECK(setup.link_errors.empty() || setup.link_errors.size() == links.size());
-  for (size_t k = 0; k < setup.link_errors.size(); ++k) {
-    const Link& error = setup.link_errors[k];
-    links[k].theta += error.theta;
-    links[k].d += error.d;
-    links[k].a += error.a;
-    links[k].alpha += error.alpha;
-    links[k].beta += error.beta;
-  }
+  CHECK(setup.link_errors.empty() || setup.link_errors.size() == data.links.size());
+  const std::vector<Link> links = WithErrors(data.links, setup.link_errors);
   return view.base_from_flange * BaseFromFlange(links, view.joints) * setup.flange_from_scanner;
 }
 

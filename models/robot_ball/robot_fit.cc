@@ -5,16 +5,13 @@
 namespace scancal {
 namespace {
 
-constexpr double kLeastSigma_mm = 1e-9;  // noiseless data need a scale too
-
 // One value per system quantity.
 std::vector<double> SystemValues(const Quantities& quantities, const RobotSetup& setup) {
   std::vector<double> values;
   for (const Quantity& quantity : quantities) values.push_back(quantity.value);
   Eigen::VectorXd::Map(values.data() + RobotBall::kHandEye, 6) = NumbersOf(setup.flange_from_scanner);
-  double* at = values.data() + RobotBall::kLinks;
-  for (const Link& error : setup.link_errors)
-    for (const double number : {error.theta, error.d, error.a, error.alpha, error.beta}) *at++ = number;
+  Eigen::VectorXd::Map(values.data() + RobotBall::kLinks, kLinkNumbers * std::ssize(setup.link_errors)) =
+      NumbersOf(setup.link_errors);
   return values;
 }
 

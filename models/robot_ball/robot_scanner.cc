@@ -15,12 +15,9 @@ namespace {
 // Declared with the model: one value per quantity that is not estimated.
 RobotSetup Nominal(const RobotBall& model, RobotSetup start) {
   const Quantities& quantities = model.quantities();
-  start.link_errors.resize(model.links().size());
-  for (size_t k = 0; k < start.link_errors.size(); ++k) {
-    const size_t first = RobotBall::kLinks + kLinkNumbers * k;
-    start.link_errors[k] = {quantities[first].value, quantities[first + 1].value, quantities[first + 2].value,
-                            quantities[first + 3].value, quantities[first + 4].value};
-  }
+  Eigen::VectorXd numbers(kLinkNumbers * std::ssize(model.links()));
+  for (Eigen::Index k = 0; k < numbers.size(); ++k) numbers[k] = quantities[RobotBall::kLinks + k].value;
+  start.link_errors = LinksOf(numbers);
   return start;
 }
 
@@ -34,8 +31,8 @@ void AddGeometry(const RobotFit& fit, Calibration* result) {
 
 void AddCheck(const RobotData& data, const RobotSetup& before, const RobotSetup& after, Calibration* result) {
   for (const CheckLength& length : data.check) result->check.names.push_back(length.name);
-  result->check.before = SpacingErrors(data, before).errors;
-  result->check.after = SpacingErrors(data, after).errors;
+  result->check.before = SpacingErrors(data, before);
+  result->check.after = SpacingErrors(data, after);
 }
 
 }  // namespace

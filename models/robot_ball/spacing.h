@@ -5,11 +5,7 @@
 
 namespace scancal {
 
-struct Spacing {
-  std::vector<double> errors;  // |p_a - p_b| in the base minus the CMM's distance, mm, one per RobotData::check
-  double max = 0, mean = 0;    // of their absolute values; 0 without any
-};
-
-Spacing SpacingErrors(const RobotData& data, const RobotSetup& setup);
+// |p_a - p_b| in the base minus the CMM's distance, mm, one per RobotData::check.
+std::vector<double> SpacingErrors(const RobotData& data, const RobotSetup& setup);
 
 }  // namespace scancal

@@ -1,4 +1,5 @@
 // Ball centres in the robot's base, and what a calibration.json says of the robot.
+#include "models/parts/calibrated_values.h"
 #include "models/robot_ball/hand_eye.h"
 #include "models/robot_ball/robot_scanner.h"
 
@@ -6,25 +7,12 @@ namespace scancal {
 namespace {
 
 Result<RobotSetup> SetupOf(const Calibration& calibration, size_t links) {
-  const auto value = [&](const std::string& name) {
-    const Parameter* parameter = calibration.Find(name);
-    return parameter ? parameter->value : 0;
-  };
-  for (const char* name : {"hand_eye_x", "hand_eye_rx"})
-    if (!calibration.Find(name)) return Error{std::string("the calibration has no ") + name + "; is it of a robot?"};
   RobotSetup setup;
-  Eigen::Matrix<double, 6, 1> numbers;
-  numbers << value("hand_eye_x"), value("hand_eye_y"), value("hand_eye_z"), value("hand_eye_rx"), value("hand_eye_ry"),
-      value("hand_eye_rz");
-  setup.flange_from_scanner = PoseOf(numbers);
-  for (size_t k = 1; k <= links; ++k) {
-    const std::string number = std::to_string(k);
-    setup.link_errors.push_back({value("theta_" + number), value("d_" + number), value("a_" + number),
-                                 value("alpha_" + number), value("beta_" + number)});
-  }
-  if (calibration.Find("theta_" + std::to_string(links + 1)))
-    return Error{"the calibration is of a robot with more joints than the " + std::to_string(links) +
-                 " of the data set"};
+  SCANCAL_ASSIGN_OR_RETURN(
+      const Eigen::VectorXd hand_eye,
+      ValuesOf(calibration, {"hand_eye_x", "hand_eye_y", "hand_eye_z", "hand_eye_rx", "hand_eye_ry", "hand_eye_rz"}));
+  setup.flange_from_scanner = PoseOf(hand_eye);
+  SCANCAL_ASSIGN_OR_RETURN(setup.link_errors, LinkErrorsOf(calibration, links));
   return setup;
 }
 

@@ -53,12 +53,6 @@ void JudgePoses(const RobotData& data, const RobotFit& fit, Calibration* result)
         poses[k].pose, poses[k].station, poses[k].rms, poses[k].rms / usual));
 }
 
-double MeanOf(const std::vector<double>& errors) {
-  double sum = 0;
-  for (const double error : errors) sum += std::abs(error);
-  return sum / static_cast<double>(errors.size());
-}
-
 void JudgeCheck(const RobotData& data, Calibration* result) {
   const LengthCheck& check = result->check;
   for (size_t k = 0; k < check.after.size(); ++k) {
@@ -69,10 +63,11 @@ void JudgeCheck(const RobotData& data, Calibration* result) {
                     check.names[k], data.check[k].distance + check.after[k], data.check[k].distance));
     return;
   }
-  if (!check.after.empty() && MeanOf(check.after) > MeanOf(check.before))
+  const double before = SizeOfErrors(check.before).mean, after = SizeOfErrors(check.after).mean;
+  if (after > before)
     result->unreliable.push_back(fmt::format(
-        "check: the known lengths are off by {:.2g} mm on average, more than with the nominal robot ({:.2g} mm)",
-        MeanOf(check.after), MeanOf(check.before)));
+        "check: the known lengths are off by {:.2g} mm on average, more than with the nominal robot ({:.2g} mm)", after,
+        before));
 }
 
 }  // namespace

@@ -105,10 +105,8 @@ Json SetupJson(const RobotSetup& setup) {
   Json json = {{"hand_eye", Matrix(setup.flange_from_scanner)}, {"link_errors", Json::object()}};
   Quantities names;
   DeclareLinks(setup.link_errors.size(), &names);
-  auto name = names.begin();
-  for (const Link& error : setup.link_errors)
-    for (const double x : {error.theta, error.d, error.a, error.alpha, error.beta})
-      json["link_errors"][(name++)->name] = x;
+  const Eigen::VectorXd numbers = NumbersOf(setup.link_errors);
+  for (size_t k = 0; k < names.size(); ++k) json["link_errors"][names[k].name] = numbers[static_cast<Eigen::Index>(k)];
   return json;
 }
 

@@ -15,7 +15,6 @@ namespace scancal {
 namespace {
 
 constexpr int kRoundsOfReading = 4;
-constexpr double kLeastSigma_mm = 1e-9;  // noiseless data need a scale too
 
 TurntablePose PoseOf(const Quantities& quantities) {
   return {quantities[Turntable::kM].value,      quantities[Turntable::kN].value,

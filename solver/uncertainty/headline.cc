@@ -8,8 +8,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::vector<double> Plain(const Eigen::VectorXd& x) { return {x.data(), x.data() + x.size()}; }
-
 BudgetLine Line(const std::string& source, char type, Unit unit, double u, const Eigen::VectorXd& sensitivity,
                 const Eigen::MatrixXd& covariance, double dof) {
   return {source, type, unit, u, Plain(sensitivity), Plain(covariance.diagonal().cwiseMax(0).cwiseSqrt()), {}, dof};

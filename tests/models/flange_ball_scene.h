@@ -63,14 +63,13 @@ inline RobotWithBall TrueRobot(const Eigen::Vector3d& ball) {
   RobotWithBall robot{NominalPanda(), ball};
   FlangeBall model(robot.links);
   Random random(7, 0);
-  for (size_t k = 0; k < robot.links.size(); ++k) {
-    Link& link = robot.links[k];
-    const Quantity* quantity = &model.quantities()[FlangeBall::kLinks + kLinkNumbers * k];
-    for (double* number : {&link.theta, &link.d, &link.a, &link.alpha, &link.beta}) {
-      const double size = quantity->unit == Unit::kMm ? 0.5 : 5e-3;
-      if (quantity++->role == Role::kEstimate) *number += size * random.Normal();
-    }
+  Eigen::VectorXd numbers = NumbersOf(robot.links);
+  for (Eigen::Index k = 0; k < numbers.size(); ++k) {
+    const Quantity& quantity = model.quantities()[FlangeBall::kLinks + k];
+    const double size = quantity.unit == Unit::kMm ? 0.5 : 5e-3;
+    if (quantity.role == Role::kEstimate) numbers[k] += size * random.Normal();
   }
+  robot.links = LinksOf(numbers);
   return robot;
 }
 
@@ -118,12 +117,7 @@ inline Eigen::VectorXd TruthOf(const FlangeBallScene& scene, const FlangeBall& m
     if (k < FlangeBall::kSpacing) {
       truth.push_back(scene.truth.ball[k]);
     } else {
-      const auto numbers = [&](const std::vector<Link>& links) {
-        const Link& link = links[(k - FlangeBall::kLinks) / kLinkNumbers];
-        return std::array{link.theta, link.d, link.a, link.alpha, link.beta};
-      };
-      const size_t e = (k - FlangeBall::kLinks) % kLinkNumbers;
-      truth.push_back(numbers(scene.truth.links)[e] - numbers(scene.nominal)[e]);
+      truth.push_back((NumbersOf(scene.truth.links) - NumbersOf(scene.nominal))[k - FlangeBall::kLinks]);
     }
   }
   return Eigen::VectorXd::Map(truth.data(), std::ssize(truth));

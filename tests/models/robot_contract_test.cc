@@ -32,24 +32,18 @@ struct RobotCase {
     scene.u_spheres = options.influences ? 0.01 : 0;
     scene.noise_seed = options.seed;
     const RobotBall model(scene.links, {});
-    for (size_t k = 0; k < scene.link_errors.size(); ++k) {
-      const auto estimated = [&](int e) {
-        return model.quantities()[RobotBall::kLinks + kLinkNumbers * k + static_cast<size_t>(e)].role ==
-               Role::kEstimate;
-      };
-      Link& error = scene.link_errors[k];
-      error = {estimated(0) ? error.theta : 0, estimated(1) ? error.d : 0, estimated(2) ? error.a : 0,
-               estimated(3) ? error.alpha : 0, estimated(4) ? error.beta : 0};
-    }
+    Eigen::VectorXd errors = NumbersOf(scene.link_errors);
+    for (Eigen::Index k = 0; k < errors.size(); ++k)
+      if (model.quantities()[RobotBall::kLinks + k].role != Role::kEstimate) errors[k] = 0;
+    scene.link_errors = LinksOf(errors);
     return scene;
   }
 
   static Eigen::VectorXd Truth(const Quantities& quantities, const RobotSetup& truth) {
     std::vector<double> all(quantities.size());
     Vector6d::Map(&all[RobotBall::kHandEye]) = NumbersOf(truth.flange_from_scanner);
-    size_t at = RobotBall::kLinks;
-    for (const Link& error : truth.link_errors)
-      for (const double number : {error.theta, error.d, error.a, error.alpha, error.beta}) all[at++] = number;
+    Eigen::VectorXd::Map(&all[RobotBall::kLinks], kLinkNumbers * std::ssize(truth.link_errors)) =
+        NumbersOf(truth.link_errors);
     std::vector<double> estimated;
     for (size_t k = 0; k < quantities.size(); ++k)
       if (quantities[k].scope == Scope::kSystem && quantities[k].role == Role::kEstimate) estimated.push_back(all[k]);

@@ -26,9 +26,8 @@ double LargestResidual(const SimulatedRobot& robot, const RobotSetup& setup) {
   const RobotBall model(robot.data.links, robot.data.spheres);
   std::vector<double> q(model.quantities().size());
   Eigen::VectorXd::Map(&q[RobotBall::kHandEye], 6) = NumbersOf(setup.flange_from_scanner);
-  double* number = &q[RobotBall::kLinks];
-  for (const Link& error : setup.link_errors)
-    for (const double x : {error.theta, error.d, error.a, error.alpha, error.beta}) *number++ = x;
+  Eigen::VectorXd::Map(&q[RobotBall::kLinks], kLinkNumbers * std::ssize(setup.link_errors)) =
+      NumbersOf(setup.link_errors);
   double largest = 0;
   for (size_t s = 0; s < robot.data.stations.size(); ++s) {
     Station station = robot.data.stations[s];
@@ -57,11 +56,10 @@ TEST(SimulateRobot, SoDoesItInTheGaugeOfACalibration) {
   EXPECT_LT(LargestResidual(robot, gauged.setup), 1e-9);
   const RobotBall model(robot.data.links, robot.data.spheres);
   size_t k = RobotBall::kLinks;
-  for (const Link& error : gauged.setup.link_errors)
-    for (const double x : {error.theta, error.d, error.a, error.alpha, error.beta})
-      if (model.quantities()[k++].role == Role::kHold) {
-        EXPECT_EQ(x, 0) << model.quantities()[k - 1].name;
-      }
+  for (const double x : NumbersOf(gauged.setup.link_errors))
+    if (model.quantities()[k++].role == Role::kHold) {
+      EXPECT_EQ(x, 0) << model.quantities()[k - 1].name;
+    }
 }
 
 TEST(SimulateRobot, IsTheExperimentOfThePaper) {

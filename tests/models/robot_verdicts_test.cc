@@ -20,7 +20,7 @@ std::vector<std::string> Doubts(const RobotData& data, const std::vector<double>
   EXPECT_TRUE(fit.ok()) << fit.error().message;
   Calibration calibration;
   calibration.check.before = before;
-  calibration.check.after = SpacingErrors(data, fit->Setup()).errors;
+  calibration.check.after = SpacingErrors(data, fit->Setup());
   for (const CheckLength& length : data.check) calibration.check.names.push_back(length.name);
   JudgeRobot(data, *fit, &calibration);
   return calibration.unreliable;

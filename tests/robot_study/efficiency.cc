@@ -22,9 +22,8 @@ constexpr double kNormal95 = 1.959964;
 VectorXd Estimated(const Quantities& quantities, const RobotSetup& setup) {
   std::vector<double> values(quantities.size());
   VectorXd::Map(&values[RobotBall::kHandEye], 6) = NumbersOf(setup.flange_from_scanner);
-  double* number = &values[RobotBall::kLinks];
-  for (const Link& error : setup.link_errors)
-    for (const double x : {error.theta, error.d, error.a, error.alpha, error.beta}) *number++ = x;
+  VectorXd::Map(&values[RobotBall::kLinks], kLinkNumbers * std::ssize(setup.link_errors)) =
+      NumbersOf(setup.link_errors);
   std::vector<double> estimated;
   for (size_t k = 0; k < quantities.size(); ++k)
     if (quantities[k].scope == Scope::kSystem && quantities[k].role == Role::kEstimate) estimated.push_back(values[k]);

@@ -57,7 +57,7 @@ std::vector<Method> StudyMethods(const RobotScene& scene, size_t sets, int threa
     for (size_t k = 0; k < methods.size(); ++k) {
       const Result<RobotSetup> setup = methods[k].second(robot.data);
       CHECK(setup.ok()) << methods[k].first << ", seed " << own.seed << ": " << setup.error().message;
-      const Spacing spacing = SpacingErrors(robot.data, *setup);
+      const ErrorSize spacing = SizeOfErrors(SpacingErrors(robot.data, *setup));
       results[k].max[static_cast<Eigen::Index>(set)] = spacing.max;
       results[k].mean[static_cast<Eigen::Index>(set)] = spacing.mean;
     }
