@@ -1,4 +1,5 @@
 """Every word of the report, in the language of its reader: texts/<language>/*.toml."""
+import re
 import tomllib
 from pathlib import Path
 
@@ -18,11 +19,25 @@ class Language:
     def __call__(self, key: str, **values: object) -> str:
         return self._find(key).format(**values)
 
-    def _find(self, key: str) -> str:
+    def named(self, key: str, word: str) -> str:
+        """A word of calibration.json (a column, a reason) in this language, from the table of that key; one that the
+        table does not know stays as it is. Numbers in it stand in the table as #: "step #" for "step 0.1"."""
+        number = r"\d+(?:\.\d+)?(?:e[+-]?\d+)?"
+        found = self._find_table(key).get(re.sub(number, "#", word))
+        if found is None:
+            return word
+        numbers = iter(re.findall(number, word))
+        return re.sub("#", lambda _: self.number(next(numbers)), found)
+
+    def _find_table(self, key: str) -> dict:
         found = self._texts
         for part in key.split("."):
             found = found[part]
-        return found.strip()
+        return found
+
+    def _find(self, key: str) -> str:
+        table, _, word = key.rpartition(".")
+        return (self._find_table(table) if table else self._texts)[word].strip()
 
     def number(self, text: str) -> str:
         """A number as notation.py writes it, with this language's decimal sign."""

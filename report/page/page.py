@@ -35,6 +35,7 @@ class Figures:
             return Markup("")
         self._drawn += 1
         title = self._language(f"figure.{name}.title")
+        captions = figures.caption(name, self._calibration, self._language) | captions
         svg = style.to_svg(drawing, name.replace("_", "-"), title, self._language)
         caption = Markup.escape(self._language(f"figure.{name}.caption", **captions))
         number = Markup.escape(self._language("figure.number", number=self._drawn))

@@ -13,6 +13,7 @@ from matplotlib import font_manager, pyplot, ticker  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 
 from fonts import FONT_FILES  # noqa: E402
+from notation import MINUS  # noqa: E402
 
 INK = "#1b2733"        # text, axes
 MUTED = "#66727f"      # what stands behind: second lines, notes
@@ -54,6 +55,11 @@ class DecimalSign(ticker.ScalarFormatter):
         return self._language.number(super().__call__(x, pos))
 
 
+def plain_numbers(language) -> ticker.FuncFormatter:
+    """For logarithmic axes and levels: 0.01, 1, 100, never powers."""
+    return ticker.FuncFormatter(lambda x, _: language.number(f"{x:.6g}".replace("-", MINUS)))
+
+
 def new_figure(height: float, rows: int = 1, columns: int = 1, **layout) -> tuple[Figure, object]:
     """A figure as wide as the page, height in inches, and its axes."""
     return pyplot.subplots(rows, columns, figsize=(WIDTH, height), **layout)
@@ -63,7 +69,7 @@ def to_svg(figure: Figure, name: str, title: str, language) -> str:
     """The figure as an <svg> element to stand in the page: the same bytes for the same figure, no fixed size, its ids
     its own, its title for those who cannot see it."""
     for axes in figure.axes:
-        for axis in (axes.xaxis, axes.yaxis):
+        for axis in (axes.xaxis, axes.yaxis, getattr(axes, "zaxis", axes.xaxis)):
             if type(axis.get_major_formatter()) is ticker.ScalarFormatter:
                 axis.set_major_formatter(DecimalSign(language))
     matplotlib.rcParams["svg.hashsalt"] = name
