@@ -5,6 +5,7 @@ meet in a figure they differ in dash or marker, too. Maps are cividis, which was
 """
 import io
 import re
+import warnings
 
 import matplotlib
 
@@ -27,6 +28,8 @@ MARKERS = ["o", "s", "^", "D", "v", "P"]
 MAP = "cividis"
 WIDTH = 6.9  # inches: the text width of an A4 page, at 96 pixels an inch that of the page's column
 
+# A name may be in any script: a letter that these fonts lack is drawn by the reader's.
+warnings.filterwarnings("ignore", message="Glyph .* missing from current font")
 for font in FONT_FILES.values():
     font_manager.fontManager.addfont(font)
 matplotlib.rcParams.update({
