@@ -3,6 +3,8 @@ import re
 import tomllib
 from pathlib import Path
 
+from markupsafe import Markup
+
 TEXTS = Path(__file__).parent / "texts"
 LANGUAGES = sorted(folder.name for folder in TEXTS.iterdir())
 
