@@ -8,6 +8,7 @@ from markupsafe import Markup
 
 import figures
 import notation
+import sections
 import style
 from calibration import Calibration
 from fonts import font_faces
@@ -51,7 +52,8 @@ def render_page(calibration: Calibration, previous: Calibration | None, language
         environment.filters[rule.__name__] = _in(language, rule)
     environment.globals |= {"t": language, "c": calibration, "previous": previous,
                             "figure": Figures(calibration, language), "json": json}
-    rendered = [(name, environment.get_template(f"sections/{name}.html").render().strip())
+    rendered = [(name, environment.get_template(f"sections/{name}.html").render(
+                     sections.content(name, calibration, previous, language)).strip())
                 for name in SECTIONS if (TEMPLATES / "sections" / f"{name}.html").exists()]
     html = environment.get_template("page.html").render(
         sections=[(name, Markup(body)) for name, body in rendered if body],
