@@ -1,11 +1,14 @@
 """calibration.json as the report reads it: its keys as they are, its tables as columns."""
+import hashlib
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 
 FORMAT_VERSION = 1
+LINK_ERROR = re.compile(r"(theta|d|a|alpha|beta)_\d+")
 
 
 class Complaint(Exception):
@@ -37,6 +40,11 @@ class Calibration(dict):
     """The file's own keys: c["status"]; below, what more than one section of the report asks."""
 
     file: Path
+    sha256: str = ""  # of the file
+
+    @property
+    def is_reliable(self) -> bool:
+        return self["status"] == "ok"
 
     @property
     def is_turntable(self) -> bool:
@@ -46,6 +54,16 @@ class Calibration(dict):
     def estimated(self) -> list[dict]:
         """Parameters with an uncertainty, in the order of "covariance"."""
         return [parameter for parameter in self["parameters"] if parameter["role"] == "estimate"]
+
+    @property
+    def link_errors(self) -> list[dict]:
+        """The estimated errors of a robot's links."""
+        return [parameter for parameter in self.estimated if LINK_ERROR.fullmatch(parameter["name"])]
+
+    @property
+    def coverage_percent(self) -> float:
+        """Of every U."""
+        return 100 * (self.get("coverage_probability") or 0.95)
 
     def parameter(self, name: str) -> dict | None:
         return next((parameter for parameter in self["parameters"] if parameter["name"] == name), None)
@@ -77,7 +95,8 @@ class Calibration(dict):
 def read_calibration(file: Path) -> Calibration:
     """Raises Complaint for what is no calibration.json of a version that is known."""
     try:
-        found = json.loads(file.read_text(encoding="utf-8"))
+        content = file.read_bytes()
+        found = json.loads(content.decode("utf-8"))
     except OSError as error:
         raise Complaint(f"{file}: {error.strerror}; expected a calibration.json of scancal refine") from None
     except json.JSONDecodeError as error:
@@ -92,5 +111,5 @@ def read_calibration(file: Path) -> Calibration:
         if not isinstance(found.get(key), kind):
             raise Complaint(f'{file}: expected "{key}"; is it a calibration.json?')
     calibration = Calibration(found)
-    calibration.file = file
+    calibration.file, calibration.sha256 = file, hashlib.sha256(content).hexdigest()
     return calibration

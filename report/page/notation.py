@@ -50,6 +50,11 @@ def percent(share: float | None) -> str:
     return "–" if share is None else f"{100 * max(0.0, share):.1f}"
 
 
+def length_unit(largest_mm: float) -> tuple[float, str]:
+    """For an axis of lengths that go up to this one: what to multiply mm with, and the unit."""
+    return (1000.0, "µm") if 0 < largest_mm < 0.1 else (1.0, "mm")
+
+
 def shortened(name: str, length: int = 28) -> str:
     """For figures, where there is no room: both ends of a long name."""
     if len(name) <= length:

@@ -8,6 +8,7 @@ from markupsafe import Markup
 
 import figures
 import notation
+import sections
 import style
 from calibration import Calibration
 from fonts import font_faces
@@ -35,6 +36,7 @@ class Figures:
             return Markup("")
         self._drawn += 1
         title = self._language(f"figure.{name}.title")
+        captions = figures.caption(name, self._calibration, self._language) | captions
         svg = style.to_svg(drawing, name.replace("_", "-"), title, self._language)
         caption = Markup.escape(self._language(f"figure.{name}.caption", **captions))
         number = Markup.escape(self._language("figure.number", number=self._drawn))
@@ -50,7 +52,8 @@ def render_page(calibration: Calibration, previous: Calibration | None, language
         environment.filters[rule.__name__] = _in(language, rule)
     environment.globals |= {"t": language, "c": calibration, "previous": previous,
                             "figure": Figures(calibration, language), "json": json}
-    rendered = [(name, environment.get_template(f"sections/{name}.html").render().strip())
+    rendered = [(name, environment.get_template(f"sections/{name}.html").render(
+                     sections.content(name, calibration, previous, language)).strip())
                 for name in SECTIONS if (TEMPLATES / "sections" / f"{name}.html").exists()]
     html = environment.get_template("page.html").render(
         sections=[(name, Markup(body)) for name, body in rendered if body],

@@ -5,6 +5,7 @@ meet in a figure they differ in dash or marker, too. Maps are cividis, which was
 """
 import io
 import re
+import warnings
 
 import matplotlib
 
@@ -13,6 +14,7 @@ from matplotlib import font_manager, pyplot, ticker  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 
 from fonts import FONT_FILES  # noqa: E402
+from notation import MINUS  # noqa: E402
 
 INK = "#1b2733"        # text, axes
 MUTED = "#66727f"      # what stands behind: second lines, notes
@@ -26,6 +28,8 @@ MARKERS = ["o", "s", "^", "D", "v", "P"]
 MAP = "cividis"
 WIDTH = 6.9  # inches: the text width of an A4 page, at 96 pixels an inch that of the page's column
 
+# A name may be in any script: a letter that these fonts lack is drawn by the reader's.
+warnings.filterwarnings("ignore", message="Glyph .* missing from current font")
 for font in FONT_FILES.values():
     font_manager.fontManager.addfont(font)
 matplotlib.rcParams.update({
@@ -54,6 +58,11 @@ class DecimalSign(ticker.ScalarFormatter):
         return self._language.number(super().__call__(x, pos))
 
 
+def plain_numbers(language) -> ticker.FuncFormatter:
+    """For logarithmic axes and levels: 0.01, 1, 100, never powers."""
+    return ticker.FuncFormatter(lambda x, _: language.number(f"{x:.6g}".replace("-", MINUS)))
+
+
 def new_figure(height: float, rows: int = 1, columns: int = 1, **layout) -> tuple[Figure, object]:
     """A figure as wide as the page, height in inches, and its axes."""
     return pyplot.subplots(rows, columns, figsize=(WIDTH, height), **layout)
@@ -63,7 +72,7 @@ def to_svg(figure: Figure, name: str, title: str, language) -> str:
     """The figure as an <svg> element to stand in the page: the same bytes for the same figure, no fixed size, its ids
     its own, its title for those who cannot see it."""
     for axes in figure.axes:
-        for axis in (axes.xaxis, axes.yaxis):
+        for axis in (axes.xaxis, axes.yaxis, getattr(axes, "zaxis", axes.xaxis)):
             if type(axis.get_major_formatter()) is ticker.ScalarFormatter:
                 axis.set_major_formatter(DecimalSign(language))
     matplotlib.rcParams["svg.hashsalt"] = name
