@@ -1,0 +1,84 @@
+// scancal report, and --report of the commands that calibrate. What stands on the page: tests/report/page.
+#include <gmock/gmock.h>
+#include "tests/cli/data_set.h"
+
+namespace scancal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
+
+class ReportTest : public CliTest {
+ protected:
+  // What scancal report says of a file with these contents; nothing is written.
+  void ExpectRefused(const std::string& contents, const ::testing::Matcher<std::string>& sentence) const {
+    const fs::path file = Path("some.json"), page = Path("page.html");
+    WriteWhole(file, contents);
+    WriteWhole(page, "the old page");
+    const Outcome outcome = RunScancal({"report", file.string(), "--out=" + page.string()});
+    EXPECT_EQ(outcome.exit_code, 1) << ::testing::PrintToString(outcome);
+    EXPECT_THAT(OneSentence(outcome), sentence);
+    EXPECT_EQ(ReadWhole(page), "the old page");
+  }
+};
+
+TEST_F(ReportTest, WritesPageAndPrintInEitherLanguage) {
+  const fs::path folder = Path("it's \"a\" folder, ä");
+  const Outcome refined = RunScancal({"refine", MakeData().string(), "--out=" + folder.string(), "--report"});
+  EXPECT_EQ(refined.exit_code, 0) << ::testing::PrintToString(refined);
+  EXPECT_EQ(refined.err, "");
+  const std::string english = ReadWhole(folder / "report.html");
+  EXPECT_THAT(english, AllOf(StartsWith("<!DOCTYPE html>"), HasSubstr("lang=\"en\"")));
+  const Outcome beside = RunScancal({"report", folder.string()});  // the same page, from the file alone
+  EXPECT_EQ(beside.exit_code, 0) << ::testing::PrintToString(beside);
+  EXPECT_EQ(beside.out, (folder / "report.html").string() + "\n");
+  EXPECT_EQ(ReadWhole(folder / "report.html"), english);
+  const Outcome german = RunScancal({"report", (folder / "calibration.json").string(), "--language=de",
+                                     "--out=" + Path("de.html").string(), "--pdf=" + Path("de.pdf").string()});
+  EXPECT_EQ(german.exit_code, 0) << ::testing::PrintToString(german);
+  EXPECT_THAT(ReadWhole(Path("de.html")), HasSubstr("lang=\"de\""));
+  EXPECT_THAT(ReadWhole(Path("de.pdf")), StartsWith("%PDF-"));
+}
+
+TEST_F(ReportTest, ADoubtfulResultKeepsItsExitCode) {
+  const fs::path data = MakeData();
+  Replace(data / "dataset.yaml", "step: 1", "step: 10");
+  const Outcome outcome = Refine(data, {"--report", "--max_iterations=1"});
+  EXPECT_EQ(outcome.exit_code, 2) << ::testing::PrintToString(outcome);
+  EXPECT_THAT(ReadWhole(Path("out") / "report.html"), HasSubstr("class=\"verdict unreliable\""));
+}
+
+TEST_F(ReportTest, RefusesWhatIsNoCalibration) {
+  ExpectRefused("", HasSubstr("some.json:1:1"));
+  ExpectRefused("{\"scancal\": 1, \"model\": \"turn", HasSubstr("some.json:1:"));
+  ExpectRefused("[1, 2]", HasSubstr("is it a calibration.json?"));
+  ExpectRefused("{\"scancal\": 2}", HasSubstr("format version 2"));
+  ExpectRefused("\xff\xfe", HasSubstr("UTF-8"));
+}
+
+TEST_F(ReportTest, RefusesWrongArguments) {
+  EXPECT_THAT(OneSentence(RunScancal({"report"})), HasSubstr("expected one"));
+  EXPECT_THAT(OneSentence(RunScancal({"report", Path("none.json").string()})), HasSubstr("none.json"));
+  EXPECT_THAT(OneSentence(RunScancal({"report", Path("none.json").string(), "--language=fr"})),
+              AllOf(HasSubstr("\"fr\""), HasSubstr("en or de")));
+  EXPECT_THAT(OneSentence(Refine(MakeData(), {"--report", "--language=fr"})), HasSubstr("\"fr\""));
+}
+
+TEST_F(ReportTest, AFullDiskLeavesTheOldPage) {
+  Refined(MakeData());
+  const fs::path page = Path("page.html");
+  WriteWhole(page, "the old page");
+  const Outcome outcome = RunScancal({"report", (Path("out") / "calibration.json").string(), "--out=" + page.string()},
+                                     {.folder = {}, .largest_file = 20'000});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(OneSentence(outcome), HasSubstr("page.html"));
+  EXPECT_EQ(ReadWhole(page), "the old page");
+  std::vector<std::string> left;
+  for (const auto& entry : fs::directory_iterator(page.parent_path())) left.push_back(entry.path().filename());
+  EXPECT_THAT(left, UnorderedElementsAre("data", "out", "page.html"));
+}
+
+}  // namespace
+}  // namespace scancal
