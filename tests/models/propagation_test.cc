@@ -3,76 +3,15 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 #include <cmath>
-#include "models/turntable/calibrated_turntable.h"
 #include "models/turntable/measured_point.h"
-#include "models/turntable/turntable_scanner.h"
 #include "solver/random.h"
-#include "tests/models/turntable_scene.h"
+#include "tests/models/calibrated_scene.h"
 
 namespace scancal {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr double kDegree = M_PI / 180;
-
-// Standard uncertainties of what is considered, each large enough to show beside the noise.
-const std::vector<std::pair<Turntable::Index, double>> kConsidered = {
-    {Turntable::kTiltX, 2e-4},       {Turntable::kTiltY, 2e-4},       {Turntable::kScaleY, 1e-3},
-    {Turntable::kScaleZ, 2e-4},      {Turntable::kShear, 2e-4},       {Turntable::kLinearity, 0.03},
-    {Turntable::kEncoderCos1, 1e-4}, {Turntable::kEncoderSin1, 1e-4}, {Turntable::kEncoderCos2, 1e-4},
-    {Turntable::kEncoderSin2, 1e-4}, {Turntable::kExpansion, 1e-4}};
-
-Turntable ModelThatConsiders(const std::vector<std::pair<Turntable::Index, double>>& quantities) {
-  Turntable model(Turntable::Residuals::kDepth);
-  for (const auto& [k, u] : quantities) {
-    model.quantity(k).role = Role::kConsider;
-    model.quantity(k).u = u;
-  }
-  return model;
-}
-
-TurntableScene SmallScene() {
-  TurntableScene scene;
-  scene.profiles = 20;
-  scene.points = 8;
-  scene.sweep = 40 * kDegree;
-  return scene;
-}
-
-// What a profiler with these errors shows of the scene, calibrated. q: by Turntable::Index.
-Calibration Calibrated(TurntableScene scene, const Turntable& model, const std::vector<double>& q) {
-  const TurntablePose usual = scene.pose;
-  scene.pose = {usual.M * (1 + q[Turntable::kExpansion]),
-                usual.N * (1 + q[Turntable::kExpansion]),
-                q[Turntable::kTiltX],
-                q[Turntable::kTiltY],
-                0,
-                0};
-  std::vector<Placement> placements;
-  for (SimulatedPlacement& simulated : SimulateTurntable(scene)) {
-    Placement& placement = placements.emplace_back();
-    placement.name = simulated.name;
-    for (SimulatedProfile& profile : simulated.profiles) {
-      const double error = Turntable::EncoderError(profile.alpha, Seen<double>{q.data(), nullptr, 0});
-      for (size_t i = 0; i < profile.y.size(); ++i) {
-        const double eta = (profile.y[i] - 95) / 130;  // about what the scene spans
-        profile.z[i] /= 1 + q[Turntable::kScaleZ];
-        profile.y[i] = (profile.y[i] - q[Turntable::kShear] * profile.z[i] - q[Turntable::kLinearity] * eta * eta) /
-                       (1 + q[Turntable::kScaleY]);
-      }
-      placement.profiles.push_back(CompressProfile(profile.alpha + error, profile.y, profile.z, {}));
-    }
-  }
-  TurntableDeclaration declaration;
-  declaration.search = {{usual.M - 1, usual.N - 1}, {usual.M + 1, usual.N + 1}, 1};
-  const auto result = TurntableScanner(declaration, model, placements).Calibrate({});
-  EXPECT_TRUE(result.ok()) << result.error().message;
-  return result.ok() ? *result : Calibration();
-}
-
-std::vector<double> NoErrors() { return std::vector<double>(ModelThatConsiders({}).quantities().size(), 0.0); }
 
 struct Reading {
   double alpha, y, z;
@@ -86,12 +25,6 @@ Eigen::Vector3d PointOf(const Reading& reading, const ScannedVolume& volume, con
 
 PropagatedPoint At(const PointUncertainty& points, const Reading& reading) {
   return points.At(reading.alpha, reading.y, reading.z);
-}
-
-PointUncertainty PointsOf(const Calibration& calibration) {
-  auto points = PointUncertainty::From(calibration);
-  EXPECT_TRUE(points.ok()) << points.error().message;
-  return *std::move(points);
 }
 
 // Draws from the joint distribution pushed through the transform: covariance of a point, variance of a distance.
@@ -226,56 +159,6 @@ TEST(PointUncertainty, NeedsABudgetThatNamesWhatWasConsidered) {
   calibration.estimated.clear();
   calibration.covariance.resize(0, 0);
   EXPECT_THAT(PointUncertainty::From(calibration).error().message, HasSubstr("a u of M, but neither"));
-}
-
-TEST(Volume, SpansWhatWasScanned) {
-  TurntableScene scene = SmallScene();
-  scene.noise_y = 0;
-  const Calibration calibration = Calibrated(scene, ModelThatConsiders(kConsidered), NoErrors());
-  const ScannedVolume volume = VolumeOf(calibration).value();
-  double lowest = 1e9, highest = -1e9;
-  for (const SimulatedPlacement& placement : SimulateTurntable(scene)) {
-    for (const SimulatedProfile& profile : placement.profiles) {
-      for (const double y : profile.y) {
-        lowest = std::min(lowest, y);
-        highest = std::max(highest, y);
-      }
-    }
-  }
-  EXPECT_NEAR(volume.alpha[0], -20 * kDegree, 1e-12);
-  EXPECT_NEAR(volume.alpha[1], 20 * kDegree, 1e-12);
-  // Eight points on a line: sqrt(9 / 7) of the length between the outermost.
-  EXPECT_NEAR(volume.z[1], 100 * std::sqrt(9 / 7.0), 1e-9);
-  EXPECT_NEAR(volume.z[0], -volume.z[1], 1e-9);
-  const double line = 0.07 * (highest - lowest);
-  EXPECT_NEAR(volume.y[0], lowest, line);
-  EXPECT_NEAR(volume.y[1], highest, line);
-  EXPECT_LE(volume.y[0], lowest);
-  EXPECT_GE(volume.y[1], highest);
-  EXPECT_EQ(volume.Eta(volume.y[0]), -1);
-  EXPECT_EQ(volume.Eta(volume.y[1]), 1);
-  EXPECT_THAT(volume.Beyond(0, 100, 0), IsEmpty());
-  EXPECT_THAT(volume.Beyond(21 * kDegree, 1e4, 0), HasSubstr("alpha = 21 deg (scanned: -20 to 20 deg)"));
-  EXPECT_THAT(volume.Beyond(0, 1e4, 0), HasSubstr("y = 1e+04 mm (scanned: "));
-  EXPECT_THAT(volume.Beyond(0, 100, -150), HasSubstr("z = -150 mm (scanned: -113.4 to 113.4 mm)"));
-}
-
-TEST(Volume, HoldsWhatAPointThereWouldHave) {
-  const Calibration calibration = Calibrated(SmallScene(), ModelThatConsiders(kConsidered), NoErrors());
-  const PointUncertainty points = PointsOf(calibration);
-  ASSERT_EQ(calibration.volume.rows.size(), 125u);
-  EXPECT_EQ(calibration.volume.columns.size(), calibration.volume.units.size());
-  for (const size_t i : {0, 31, 62, 124}) {
-    const std::vector<double>& row = calibration.volume.rows[i];
-    ASSERT_EQ(row.size(), calibration.volume.columns.size());
-    const PropagatedPoint point = points.At(row[0], row[1], row[2]);
-    for (int k = 0; k < 3; ++k) {
-      EXPECT_EQ(row[3 + k], point.position[k]);
-      EXPECT_EQ(row[6 + k], point.uncertainty.U[k]);
-      EXPECT_GE(row[9], row[6 + k]);
-    }
-    EXPECT_EQ(row[9], point.uncertainty.U_max);
-  }
 }
 
 Propagation Propagated(const Calibration& calibration, const std::string& typed) {

@@ -2,63 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <limits>
-#include "report/text.h"
+#include "tests/report/some_calibration.h"
 
 namespace scancal {
 namespace {
 
 using ::testing::AllOf;
-using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using ::testing::StartsWith;
-
-Calibration SomeCalibration() {
-  Calibration c;
-  c.model = "turntable";
-  c.name = "a plate";
-  c.residual = "depth";
-  for (const auto& [name, unit, role, value, u] : {std::tuple{"M", Unit::kMm, Role::kEstimate, 123.0021, 0.011},
-                                                   {"N", Unit::kMm, Role::kEstimate, 409.1, 0.02},
-                                                   {"tilt_x", Unit::kRad, Role::kConsider, 1e-3, 2e-4},
-                                                   {"tilt_y", Unit::kRad, Role::kHold, 0.0, 0.0}}) {
-    Parameter& p = c.parameters.emplace_back();
-    p.name = name;
-    p.unit = unit;
-    p.role = role;
-    p.value = value;
-    p.u = u;
-    p.k = 2;
-    p.U = 2 * u;
-    p.dof = 100;
-  }
-  c.estimated = {"M", "N"};
-  c.covariance = Eigen::Matrix2d{{1.21e-4, 3e-5}, {3e-5, 4e-4}};
-  c.grid = {{"M", "N"}, {123, 409}, 0.05, 1, 651};
-  c.targets = {{"left",
-                800,
-                3,
-                {{"off the line of their profile", 2}, {"off the plane of their target", 5}},
-                {{"normal", {0, -1, 0}}, {"distance", {480}}},
-                0.05,
-                {{0, 1, 2}, {1, 0.25, 0}, 1.5, false, 0.04, 8, {1, 700, 0}, 2, 3}}};
-  c.sigma = 0.05;
-  c.inputs = {{"left.csv", "abc"}};
-  c.command = "scancal refine data";
-  c.version = "0.1.0";
-  c.converged = true;
-  return c;
-}
-
-Calibration WithBudgetAndVolume() {
-  Calibration c = SomeCalibration();
-  c.budget = {{"encoder_jitter", 'A', Unit::kRad, 2e-5, {}, {0.01, 0.015}, {0.8, 0.6}, 100},
-              {"tilt_x", 'B', Unit::kRad, 2e-4, {3.5, -1.25}, {7e-4, 2.5e-4}, {0.2, 0.4}, INFINITY}};
-  c.volume = {{"alpha", "y", "X", "Y", "Z", "U_x", "U_y", "U_z", "U_max"},
-              {Unit::kRad, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm},
-              {{-0.25, 40, 1, 2, 3, 0.01, 0.02, 0.03, 0.031}, {0.25, 160, 4, 5, 6, 0.1, 0.2, 0.3, 0.312}}};
-  return c;
-}
 
 TEST(CalibrationJsonTest, ValuesArriveUnderTheirKeys) {
   const Json json = ToJson(SomeCalibration());
@@ -256,17 +207,6 @@ TEST(CalibrationJsonTest, OtherDocumentsAreErrorsNotCrashes) {
   }
 }
 
-MonteCarloSummary SomeMonteCarlo() {
-  MonteCarloSummary summary;
-  summary.trials = 10'000;
-  summary.failed = 3;
-  summary.seed = 18'446'744'073'709'551'615u;
-  summary.parameters = {
-      {"M", 123.0023, 0.0112, 122.9801, 123.0239, 122.9801, 123.0241, 5e-3, "PASS", {122, 123, 124}, {4000, 5997}},
-      {"N", 409.1, 0.02, 409.06, 409.14, 409.06, std::numeric_limits<double>::infinity(), 5e-3, "FAIL", {}, {}}};
-  return summary;
-}
-
 TEST(CalibrationJsonTest, TheMonteCarloIsEmptyOrWhole) {
   Calibration c = SomeCalibration();
   EXPECT_EQ(ToJson(c)["montecarlo"], Json::object());
@@ -302,64 +242,6 @@ TEST(CalibrationJsonTest, TheMonteCarloIsEmptyOrWhole) {
   EXPECT_TRUE(std::isnan(back->monte_carlo.parameters[1].gum_high));
   c.monte_carlo = {};
   EXPECT_EQ(CalibrationFromJson(ToJson(c), "f")->monte_carlo.trials, 0);
-}
-
-TEST(TextTest, TheMonteCarloStandsBesideValueAndU) {
-  Calibration c = SomeCalibration();
-  EXPECT_THAT(ToText(c), Not(HasSubstr("Monte Carlo")));
-  c.monte_carlo = SomeMonteCarlo();
-  EXPECT_THAT(ToText(c),
-              AllOf(HasSubstr("Monte Carlo: 10000 trials, seed 18446744073709551615; value +- U validated to "
-                              "one digit of u (JCGM 101, clause 8)\n"),
-                    ContainsRegex("M +123.002 +mm +0.011 +122.980 +123.024 +122.980 +123.024 +0.0050 +PASS"),
-                    ContainsRegex("N .*infinite .*FAIL"), Not(HasSubstr("too few"))));
-  c.monte_carlo.digits = 2;
-  c.monte_carlo.stable = false;
-  EXPECT_THAT(ToText(c), AllOf(HasSubstr("two digits"), HasSubstr("too few")));
-}
-
-TEST(TextTest, TheReportNamesEverythingThatMatters) {
-  Calibration c = SomeCalibration();
-  c.warnings = {"a first warning", "a second"};
-  const std::string text = ToText(c);
-  EXPECT_THAT(text, AllOf(HasSubstr("123.002(11)"), HasSubstr("409.100(20)"), HasSubstr("considered"),
-                          HasSubstr("set aside: left: 2 points off the line"),
-                          HasSubstr("set aside: left: 5 points off the plane"), HasSubstr("warning: a first warning\n"),
-                          HasSubstr("warning: a second\n")));
-  EXPECT_THAT(text, AllOf(HasSubstr("not a traceable uncertainty"), HasSubstr("\nstatus: ok\n")));
-  EXPECT_THAT(text, Not(HasSubstr("tilt_y")));  // held at 0: nothing to tell
-  EXPECT_THAT(text, Not(HasSubstr("nan")));
-}
-
-TEST(TextTest, OneLineSumsUpTheVolume) {
-  Calibration c = WithBudgetAndVolume();
-  const std::string of_points = "expanded uncertainty of a measured point over the scanned volume: ";
-  EXPECT_THAT(ToText(c), HasSubstr(of_points + "0.031 to 0.31 mm, largest at alpha = 14.3 deg, y = 160 mm; the noise"));
-  c.volume.rows[0].back() = c.volume.rows[1].back();
-  EXPECT_THAT(ToText(c), HasSubstr(of_points + "0.31 mm throughout; the noise"));
-  c.volume = {};
-  EXPECT_THAT(ToText(c), Not(HasSubstr("volume")));
-}
-
-TEST(TextTest, DeclaredInfluencesDropTheFootnote) {
-  Calibration c = SomeCalibration();
-  c.budget.push_back({"scale_y", 'B', Unit::kOne, 1e-4, {}, {0.001, 0.002}, {0.01, 0.01}, 1e9});
-  EXPECT_THAT(ToText(c), Not(HasSubstr("traceable")));
-}
-
-TEST(TextTest, TheReasonsOfAnUnreliableResultComeLast) {
-  Calibration c = SomeCalibration();
-  c.unreliable = {"the refinement did not converge"};
-  EXPECT_THAT(ToText(c), HasSubstr("unreliable: the refinement did not converge\nstatus: unreliable\n"));
-}
-
-TEST(TextTest, ARowThatWasLeftOutIsExplained) {
-  Comparison comparison{{{"M/mm", 6}, {"N/mm", 6}, {"s", 2}}, {}};
-  comparison.rows.push_back({"grid, step 0.001", {}, "left out: 1e+09 nodes"});
-  comparison.rows.push_back({"joint, depth", {{123.0021, 0.011}, {409.1, 0.02}, {std::nullopt}}, ""});
-  const std::string text = ToText(comparison);
-  EXPECT_THAT(text, AllOf(HasSubstr("grid, step 0.001: left out: 1e+09 nodes\n"), HasSubstr("123.002(11)"),
-                          HasSubstr("409.100(20)"), HasSubstr("M/mm")));
 }
 
 }  // namespace
