@@ -77,7 +77,8 @@ Result<Comparison> RobotScanner::Compare() const {
                                        {"Zhou 2025, corrected distances", [&] { return Zhou2025(data); }},
                                        {"joint refinement", [&]() -> Result<RobotSetup> {
                                           SCANCAL_ASSIGN_OR_RETURN(const RobotSetup start, InitialHandEye(data));
-                                          SCANCAL_ASSIGN_OR_RETURN(const RobotFit fit, FitRobot(data, model_, start));
+                                          SCANCAL_ASSIGN_OR_RETURN(const RobotFit fit,
+                                                                   FitRobot(data, model_, start.flange_from_scanner));
                                           return fit.Setup();
                                         }}};
   for (const Method& method : methods) comparison.rows.push_back(RowOf(data, method));

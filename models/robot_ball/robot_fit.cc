@@ -5,14 +5,13 @@
 namespace scancal {
 namespace {
 
-// One value per system quantity.
-std::vector<double> SystemValues(const Quantities& quantities, const RobotSetup& setup) {
-  std::vector<double> values;
-  for (const Quantity& quantity : quantities) values.push_back(quantity.value);
-  Eigen::VectorXd::Map(values.data() + RobotBall::kHandEye, 6) = NumbersOf(setup.flange_from_scanner);
-  Eigen::VectorXd::Map(values.data() + RobotBall::kLinks, kLinkNumbers * std::ssize(setup.link_errors)) =
-      NumbersOf(setup.link_errors);
-  return values;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+// values: one per quantity of the model.
+RobotSetup SetupOf(const std::vector<double>& values, size_t joints) {
+  const auto errors =
+      Eigen::VectorXd::Map(values.data() + RobotBall::kLinks, kLinkNumbers * static_cast<Eigen::Index>(joints));
+  return {PoseOf(Vector6d::Map(&values[RobotBall::kHandEye])), LinksOf(errors)};
 }
 
 Error NotDetermined(const Observability& observability) {
@@ -25,13 +24,17 @@ Error NotDetermined(const Observability& observability) {
 
 }  // namespace
 
-Result<RobotFit> FitRobot(const RobotData& data, const RobotBall& model, const RobotSetup& start, int max_iterations) {
+Result<RobotFit> FitRobot(const RobotData& data, const RobotBall& model, const Eigen::Isometry3d& hand_eye,
+                          int max_iterations) {
+  std::vector<double> start;
+  for (const Quantity& quantity : model.quantities()) start.push_back(quantity.value);
+  Vector6d::Map(&start[RobotBall::kHandEye]) = NumbersOf(hand_eye);
   RobotFit fit;
-  SCANCAL_ASSIGN_OR_RETURN(fit.stations, StationsAt(data, start));
+  SCANCAL_ASSIGN_OR_RETURN(fit.stations, StationsAt(data, SetupOf(start, data.links.size())));
   Problem problem = MakeProblem<RobotBall>(std::make_shared<const RobotBall>(model), fit.stations);
   problem.WeighEqually(data.usual_ball_noise > 0 ? data.usual_ball_noise : 1);
   Estimate from = NominalStart(problem);
-  SetValues(problem, SystemValues(model.quantities(), start), 0, &from);
+  SetValues(problem, start, 0, &from);
   fit.solution = Solve(std::move(problem), from, {max_iterations});
   const Observability& observability = fit.solution.observability;
   if (!observability.undetermined_targets.empty())
@@ -43,20 +46,12 @@ Result<RobotFit> FitRobot(const RobotData& data, const RobotBall& model, const R
 }
 
 RobotSetup RobotFit::Setup() const {
-  const Problem& problem = solution.problem;
-  const std::vector<double> values = Values(problem, solution.fit.estimate, 0);
-  RobotSetup setup;
-  setup.flange_from_scanner = PoseOf(Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&values[RobotBall::kHandEye]));
-  for (size_t k = RobotBall::kLinks; problem.quantities[k].name.starts_with("theta_"); k += kLinkNumbers) {
-    setup.link_errors.push_back({values[k], values[k + 1], values[k + 2], values[k + 3], values[k + 4]});
-    if (k + kLinkNumbers >= values.size()) break;
-  }
-  return setup;
+  return SetupOf(Values(solution.problem, solution.fit.estimate, 0), stations.front().views.front().joints.size());
 }
 
 Eigen::Isometry3d RobotFit::BaseFromArtifact(size_t station) const {
   const std::vector<double> values = Values(solution.problem, solution.fit.estimate, station);
-  const Eigen::Isometry3d turned = PoseOf(Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&values[RobotBall::kArtifact]));
+  const Eigen::Isometry3d turned = PoseOf(Vector6d::Map(&values[RobotBall::kArtifact]));
   const Eigen::Isometry3d& reference = stations[station].base_from_artifact;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = turned.linear() * reference.linear();

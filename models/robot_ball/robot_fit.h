@@ -15,11 +15,12 @@ struct RobotFit {
 
 // Generalised least squares of all balls of all poses at once: rows are whitened per pose with V = blockdiag(balls) +
 // sigma_r^2 1 1' (x) I3, because repeatability is common to all balls of a pose. sigma_r and the noise of the balls are
-// as declared, or restricted maximum likelihood. model: carries roles and priors. start: of the hand-eye and of the
-// links that are estimated; every station starts where its balls then lie (StationsAt).
+// as declared, or restricted maximum likelihood. model: carries roles, priors and the values of the links, estimated or
+// held, that the fit starts from; hand_eye: where that starts; every station starts where its balls then lie
+// (StationsAt).
 //
 // An Error names what the data do not determine.
-Result<RobotFit> FitRobot(const RobotData& data, const RobotBall& model, const RobotSetup& start,
+Result<RobotFit> FitRobot(const RobotData& data, const RobotBall& model, const Eigen::Isometry3d& hand_eye,
                           int max_iterations = 100);
 
 }  // namespace scancal

@@ -12,15 +12,6 @@
 namespace scancal {
 namespace {
 
-// Declared with the model: one value per quantity that is not estimated.
-RobotSetup Nominal(const RobotBall& model, RobotSetup start) {
-  const Quantities& quantities = model.quantities();
-  Eigen::VectorXd numbers(kLinkNumbers * std::ssize(model.links()));
-  for (Eigen::Index k = 0; k < numbers.size(); ++k) numbers[k] = quantities[RobotBall::kLinks + k].value;
-  start.link_errors = LinksOf(numbers);
-  return start;
-}
-
 void AddGeometry(const RobotFit& fit, Calibration* result) {
   result->frames["hand_eye"] = fit.Setup().flange_from_scanner.matrix();
   for (size_t t = 0; t < result->targets.size(); ++t) {
@@ -45,10 +36,10 @@ Result<Calibration> RobotScanner::Calibrate(const RefineChoice& choice) const {
     return Error{
         "weights: found equal, but the balls of a pose share its repeatability: they cannot be weighed equally"};
   const RobotData& data = declaration_.data;
-  SCANCAL_ASSIGN_OR_RETURN(const RobotSetup hand_eye, InitialHandEye(data));
-  const RobotSetup start = Nominal(model_, hand_eye);
+  SCANCAL_ASSIGN_OR_RETURN(const RobotSetup start, InitialHandEye(data));
   const auto began = std::chrono::steady_clock::now();
-  SCANCAL_ASSIGN_OR_RETURN(const RobotFit fit, FitRobot(data, model_, start, choice.max_iterations));
+  SCANCAL_ASSIGN_OR_RETURN(const RobotFit fit,
+                           FitRobot(data, model_, start.flange_from_scanner, choice.max_iterations));
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
 
   Calibration result = Summarize(fit.solution, {});

@@ -142,7 +142,7 @@ void CompareWithScipy(const std::filesystem::path& script, const std::filesystem
   CHECK(fit.converged) << fit.message;
   const auto whole = [&] {
     const Result<RobotSetup> start = InitialHandEye(joint.data);
-    CHECK(start.ok() && FitRobot(joint.data, *joint.model, *start).ok());
+    CHECK(start.ok() && FitRobot(joint.data, *joint.model, start->flange_from_scanner).ok());
   };
   const double whole_s = MedianSecondsOf(whole);
   if (script.empty()) return;
@@ -177,7 +177,7 @@ double FitSeconds(const RobotData& data, const RobotScene& scene) {
   return SecondsOf([&] {
     const Result<RobotSetup> start = InitialHandEye(data);
     CHECK(start.ok()) << start.error().message;
-    const Result<RobotFit> fit = FitRobot(data, model, *start);
+    const Result<RobotFit> fit = FitRobot(data, model, start->flange_from_scanner);
     CHECK(fit.ok()) << fit.error().message;
     CHECK(fit->solution.fit.converged) << fit->solution.fit.message;
   });

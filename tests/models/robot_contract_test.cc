@@ -102,7 +102,7 @@ struct RobotCase {
     read->data.links = robot.data.links;  // of dataset.yaml
     const RobotBall model(read->data.links, read->data.spheres);
     const Result<RobotSetup> start = InitialHandEye(read->data);
-    const Result<RobotFit> fit = FitRobot(read->data, model, *start);
+    const Result<RobotFit> fit = FitRobot(read->data, model, start->flange_from_scanner);
     EXPECT_TRUE(fit.ok()) << fit.error().message;
     const Eigen::VectorXd truth = Truth(model.quantities(), robot.truth);
     Eigen::VectorXd estimate = fit->solution.fit.estimate.system;
@@ -114,7 +114,7 @@ struct RobotCase {
     const SimulatedRobot robot = SimulateRobot(Scene({}));
     RobotBall model(robot.data.links, robot.data.spheres);
     model.quantity(RobotBall::kLinks).role = Role::kEstimate;  // the base itself
-    const Result<RobotFit> fit = FitRobot(robot.data, model, robot.truth);
+    const Result<RobotFit> fit = FitRobot(robot.data, model, robot.truth.flange_from_scanner);
     return fit.ok() ? "" : fit.error().message;
   }
 };

@@ -16,7 +16,7 @@ using ::testing::IsEmpty;
 // The doubts about these data, checked against `before`.
 std::vector<std::string> Doubts(const RobotData& data, const std::vector<double>& before) {
   const Result<RobotSetup> start = InitialHandEye(data);
-  const Result<RobotFit> fit = FitRobot(data, RobotBall(data.links, data.spheres), *start);
+  const Result<RobotFit> fit = FitRobot(data, RobotBall(data.links, data.spheres), start->flange_from_scanner);
   EXPECT_TRUE(fit.ok()) << fit.error().message;
   Calibration calibration;
   calibration.check.before = before;

@@ -74,7 +74,7 @@ struct Try {
 Try Refined(const RobotScene& scene, Noise noise, const Truth& truth) {
   const SimulatedRobot robot = SimulateRobot(scene);
   const RobotBall model = DeclaredModel(robot.data, scene, noise);
-  const Result<RobotFit> fit = FitRobot(robot.data, model, robot.truth);
+  const Result<RobotFit> fit = FitRobot(robot.data, model, robot.truth.flange_from_scanner);
   if (!fit.ok() || !fit->solution.fit.converged) return {};
   const Headline headline = HeadlineOf(fit->solution, ClusteredCovariance(fit->solution.problem, fit->solution.linear));
   VectorXd value = fit->solution.fit.estimate.system;

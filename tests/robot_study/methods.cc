@@ -26,7 +26,7 @@ Result<RobotSetup> FirstHandEye(RobotData data) {
 
 Result<RobotSetup> Refinement(const RobotData& data, const RobotScene& scene) {
   SCANCAL_ASSIGN_OR_RETURN(const RobotSetup start, InitialHandEye(data));
-  SCANCAL_ASSIGN_OR_RETURN(const RobotFit fit, FitRobot(data, DeclaredModel(data, scene), start));
+  SCANCAL_ASSIGN_OR_RETURN(const RobotFit fit, FitRobot(data, DeclaredModel(data, scene), start.flange_from_scanner));
   return fit.Setup();
 }
 
