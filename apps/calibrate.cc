@@ -7,6 +7,7 @@
 #include "io/json_file.h"
 #include "io/output_file.h"
 #include "report/calibration_json.h"
+#include "report/figures_json.h"
 #include "report/page.h"
 #include "report/text.h"
 
@@ -29,6 +30,10 @@ Result<Calibration> Calibrated(const std::vector<std::string>& arguments, const 
   calibration.command = CommandLine();
   calibration.version = SCANCAL_VERSION;
   Json json = ToJson(calibration);
+  // What the other methods cannot do is no reason to lose this one's result.
+  if (const Result<Comparison> comparison = scanner->Compare({.brief = true}); comparison.ok())
+    json["compare"] = ToJson(*comparison);
+  if (!scanner->dataset().certificate.is_null()) json["certificate"] = scanner->dataset().certificate;
   SCANCAL_ASSIGN_OR_RETURN(json["data"], scanner->Data());
   SCANCAL_RETURN_IF_ERROR(WriteJson(file, json));
   return calibration;

@@ -14,7 +14,7 @@ namespace {
 Result<Comparison> Compared(const std::vector<std::string>& arguments) {
   SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, LoadAndEcho(arguments));
   if (!FLAGS_surface.empty()) SCANCAL_RETURN_IF_ERROR(scanner->WriteSurface(FLAGS_surface));
-  return scanner->Compare();
+  return scanner->Compare({});
 }
 
 int Run(const std::vector<std::string>& arguments) {

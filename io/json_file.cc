@@ -1,4 +1,5 @@
 #include "io/json_file.h"
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include "io/input_file.h"
@@ -48,6 +49,26 @@ std::string ReasonOf(const std::string& message) {
   return Short(message);
 }
 
+// Two spaces a level; a list of mere values stays on its line.
+void Append(const Json& json, const std::string& indent, std::string* text) {
+  const auto is_structured = [](const Json& each) { return each.is_structured(); };
+  const bool values = json.is_array() && std::none_of(json.begin(), json.end(), is_structured);
+  if (values || json.empty() || !json.is_structured()) {
+    *text += json.dump();
+    return;
+  }
+  const std::string inner = indent + "  ";
+  *text += json.is_array() ? "[" : "{";
+  const char* before = "\n";
+  for (const auto& item : json.items()) {
+    *text += before + inner;
+    if (json.is_object()) *text += Json(item.key()).dump() + ": ";
+    Append(item.value(), inner, text);
+    before = ",\n";
+  }
+  *text += "\n" + indent + (json.is_array() ? "]" : "}");
+}
+
 }  // namespace
 
 Result<Json> ReadJson(const std::filesystem::path& path) {
@@ -76,7 +97,9 @@ Result<Json> ReadJson(const std::filesystem::path& path) {
 Result<void> WriteJson(const std::filesystem::path& path, const Json& json) {
   const std::string unwritable = FindUnwritable(json, "");
   if (!unwritable.empty()) return Error{path.string() + ": not written: " + unwritable + ", which JSON cannot hold"};
-  return WriteFile(path, json.dump(2) + "\n");
+  std::string text;
+  Append(json, "", &text);
+  return WriteFile(path, text + "\n");
 }
 
 }  // namespace scancal

@@ -24,12 +24,17 @@ struct RefineChoice {
   MonteCarloChoice monte_carlo{};
 };
 
+struct CompareChoice {
+  bool brief = false;  // without what takes much longer than a calibration; the row's note says so
+};
+
 // A scanner with its data loaded and compressed.
 class Scanner {
  public:
   virtual ~Scanner() = default;
   // What was declared and read, in one plain sentence: what a reader could have got wrong.
   virtual std::string Describe() const = 0;
+  virtual const Dataset& dataset() const = 0;
   // Every file that was read, dataset.yaml first.
   virtual std::vector<std::filesystem::path> Files() const = 0;
   // For calibration.json: the compressed data, and under "dataset" the text of dataset.yaml. ScannerKind::reload makes
@@ -39,7 +44,7 @@ class Scanner {
   // about a computed result are fields of the Calibration.
   virtual Result<Calibration> Calibrate(const RefineChoice& choice) const = 0;
   // The published method and ours on the same data, one row each; the last row is the reference.
-  virtual Result<Comparison> Compare() const = 0;
+  virtual Result<Comparison> Compare(const CompareChoice& choice) const = 0;
   // The search's objective over its box, one line a node.
   virtual Result<void> WriteSurface(const std::filesystem::path& file) const = 0;
 };

@@ -94,6 +94,11 @@ void Turntable::SetPlane(const Eigen::Vector3d& normal, double distance, Target*
   target->e2 = target->normal.cross(target->e1);
 }
 
+TurntablePose TurntablePose::Of(const std::vector<double>& values) {
+  return {values[Turntable::kM],     values[Turntable::kN],      values[Turntable::kTiltX],
+          values[Turntable::kTiltY], values[Turntable::kScaleY], values[Turntable::kScaleZ]};
+}
+
 Eigen::Affine3d TurntablePose::TableFromSensor(double alpha) const {
   return scancal::TableFromSensor(alpha, M, N, tilt_x, tilt_y) * Eigen::Scaling(1.0, 1 + scale_y, 1 + scale_z);
 }

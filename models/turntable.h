@@ -113,6 +113,7 @@ class Turntable {
 // Where the profiler stands: what turns a measured point into the table frame.
 struct TurntablePose {
   double M = 0, N = 0, tilt_x = 0, tilt_y = 0, scale_y = 0, scale_z = 0;
+  static TurntablePose Of(const std::vector<double>& values);  // one per quantity of Turntable
   // P = table_from_sensor (0, y, z), one for all points of a profile; scales included.
   Eigen::Affine3d TableFromSensor(double alpha) const;
   Eigen::Vector3d Point(double alpha, double y, double z) const {

@@ -1,5 +1,6 @@
 #include "report/calibration_json.h"
 #include <cmath>
+#include "report/figures_json.h"
 #include "report/montecarlo_json.h"
 #include "report/uncertainty_json.h"
 
@@ -9,15 +10,15 @@ namespace {
 constexpr int kFormatVersion = 1;
 constexpr double kCoverage = 0.95;  // of every U
 
-// JSON has no infinity: what is not known is null.
-Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json Whole(double count) { return static_cast<int64_t>(count); }
 
 Json ParameterJson(const Parameter& p) {
   Json json = {
       {"name", p.name}, {"unit", Name(p.unit)}, {"role", Name(p.role)}, {"value", Number(p.value)}, {"u", Number(p.u)}};
+  if (p.nominal) json["nominal"] = Number(*p.nominal);
   if (p.role != Role::kEstimate) return json;
+  if (p.prior_u > 0) json["prior"] = Number(p.prior);
+  if (p.prior_u > 0) json["prior_u"] = Number(p.prior_u);
   json["k"] = Number(p.k);
   json["U"] = Number(p.U);
   json["dof"] = Number(p.dof);
@@ -56,6 +57,7 @@ Json ResidualsJson(const TargetSummary& target) {
   for (const double count : r.histogram) json["histogram"]["counts"].push_back(Whole(count));
   json["histogram"]["below"] = Whole(r.below);
   json["histogram"]["above"] = Whole(r.above);
+  json.update(ToJson(target.residual_tables));
   return json;
 }
 
@@ -116,6 +118,12 @@ Json ErrorsJson(const std::vector<double>& errors) {
   return {{"max", size.max}, {"mean", size.mean}, {"errors", errors}};
 }
 
+Json KnownJson(const std::vector<double>& u) {  // 0 is not known
+  Json json = Json::array();
+  for (const double each : u) json.push_back(each > 0 ? Json(each) : Json(nullptr));
+  return json;
+}
+
 // Models without such a check or frames have no such keys.
 void AddCheckAndFrames(const Calibration& c, Json* json) {
   for (const auto& [name, frame] : c.frames) (*json)[name] = FrameJson(frame);
@@ -124,18 +132,18 @@ void AddCheckAndFrames(const Calibration& c, Json* json) {
                       {"after", ErrorsJson(c.check.after)},
                       {"names", c.check.names},
                       {"pairs", c.check.after.size()}};
+  if (!c.check.u.empty()) (*json)["check"]["u"] = KnownJson(c.check.u);
 }
 
-Json VolumeJson(const UncertaintyMap& volume) {
-  if (volume.rows.empty()) return Json::object();
-  Json units = Json::array(), rows = Json::array();
-  for (const Unit unit : volume.units) units.push_back(Name(unit));
-  for (const std::vector<double>& row : volume.rows) {
-    Json numbers = Json::array();
-    for (const double number : row) numbers.push_back(Number(number));
-    rows.push_back(std::move(numbers));
-  }
-  return {{"columns", volume.columns}, {"units", units}, {"rows", rows}};
+Json InfluencesJson(const Calibration& calibration) {
+  Json list = Json::array();
+  for (const Influence& influence : calibration.influences)
+    list.push_back({{"source", influence.source},
+                    {"role", Name(influence.role)},
+                    {"u", Number(influence.u)},
+                    {"unit", Name(influence.unit)},
+                    {"scope", Name(influence.scope)}});
+  return list;
 }
 
 Json JackknifeJson(const Calibration& calibration) {
@@ -183,13 +191,15 @@ Json ToJson(const Calibration& c) {
   json["neighbours"] = Number(c.neighbours);
   json["misfits"] = MisfitsJson(c);
   json["budget"] = BudgetJson(c);
+  json["influences"] = InfluencesJson(c);
   json["compare"] = Json::array();
-  json["surface"] = Json::object();
+  json["surface"] = ToJson(c.surface);
   json["jackknife"] = JackknifeJson(c);
   json["montecarlo"] = ToJson(c.monte_carlo);
   json["residuals"] = {{"targets", Json::array()}};
   for (const TargetSummary& target : c.targets) json["residuals"]["targets"].push_back(ResidualsJson(target));
-  json["volume"] = VolumeJson(c.volume);
+  json["scene"] = SceneJson(c.targets);
+  json["volume"] = c.volume.rows.empty() ? Json::object() : ToJson(c.volume);
   json["data"] = Json::object();
   json["converged"] = c.converged;
   json["iterations"] = c.iterations;

@@ -56,7 +56,7 @@ std::string MonteCarloText(const Calibration& c) {
 }
 
 // The range of the largest U over the volume, and where it is largest.
-std::string VolumeText(const UncertaintyMap& volume) {
+std::string VolumeText(const NumberTable& volume) {
   if (volume.rows.empty()) return "";
   const auto by_U = [](const auto& a, const auto& b) { return a.back() < b.back(); };
   const auto [least, most] = std::minmax_element(volume.rows.begin(), volume.rows.end(), by_U);

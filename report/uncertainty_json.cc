@@ -122,7 +122,7 @@ bool ReadBudget(const Json& json, Calibration* calibration) {
   return true;
 }
 
-bool ReadVolume(const Json& json, UncertaintyMap* volume) {
+bool ReadVolume(const Json& json, NumberTable* volume) {
   const auto columns = Texts(At(json, "columns")), units = Texts(At(json, "units"));
   const Json& rows = At(json, "rows");
   if (!columns || !units || units->size() != columns->size() || !rows.is_array()) return false;

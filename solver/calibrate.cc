@@ -15,15 +15,9 @@ constexpr double kCoverage = 0.95;
 constexpr double kKnown_dof = 1e9;     // as good as infinitely many
 constexpr double kRounding_mm = 1e-9;  // a pure error below this is none
 
-double DataSumOfSquares(const Solution& solution, size_t target) {  // without weights
-  const std::vector<double> values = Values(solution.problem, solution.fit.estimate, target);
+double DataSumOfSquares(const Solution& solution, size_t target) {
   double sum = 0;
-  Eigen::VectorXd r;
-  for (const Block& view : solution.problem.targets[target].views) {
-    if (!view.prior.empty()) continue;
-    Block{view.rows, 1, {}, {}, {}}.Evaluate(values.data(), {}, &r, nullptr);
-    sum += r.squaredNorm();
-  }
+  for (const Eigen::VectorXd& r : ResidualsOf(solution, target)) sum += r.squaredNorm();
   return sum;
 }
 
@@ -64,6 +58,8 @@ void AddParameters(const Solution& solution, const Headline& headline, const Cov
     p.determined = quantity.role == Role::kConsider ? "considered" : "held";
     if (quantity.role == Role::kConsider) p.u = quantity.u;
     if (quantity.role != Role::kEstimate) continue;
+    p.prior = quantity.value;
+    p.prior_u = quantity.u;
     result->estimated.push_back(p.name);
     p.value = solution.fit.estimate.system[e];
     p.u = std::sqrt(headline.covariance(e, e));
@@ -98,6 +94,31 @@ void AddTargets(const Solution& solution, const PureError& pure_error, Calibrati
   result->lack_of_fit = TestFit(sum_of_squares, dof, pure_error);
 }
 
+bool IsInfluence(const Quantity& quantity) {
+  const bool of_target_with_prior = quantity.scope == Scope::kTarget && quantity.u > 0;
+  const bool random = quantity.scope == Scope::kView || quantity.scope == Scope::kPoint;
+  return quantity.role != Role::kEstimate || of_target_with_prior || random;
+}
+
+void AddInfluences(const Solution& solution, Calibration* result) {
+  std::map<std::string, std::pair<double, double>> squares;  // source -> sum, count
+  for (const Quantity& quantity : solution.problem.quantities) {
+    if (!IsInfluence(quantity)) continue;
+    auto& [sum, count] = squares[quantity.Source()];
+    if (count++ == 0)
+      result->influences.push_back({quantity.Source(), quantity.unit, quantity.scope, quantity.role, 0});
+    if (quantity.role != Role::kHold) sum += quantity.u * quantity.u;
+  }
+  for (Influence& influence : result->influences) {
+    const auto& [sum, count] = squares[influence.source];
+    influence.u = std::sqrt(sum / count);
+    if (!solution.variances) continue;
+    const auto& from_data = solution.variances->sources;
+    if (std::find(from_data.begin(), from_data.end(), influence.source) != from_data.end())
+      influence.role = Role::kEstimate;
+  }
+}
+
 void AddMisfits(const Solution& solution, double noise_dof, Calibration* result) {
   for (const Misfit& misfit : TestMisfits(solution.problem, solution.fit.estimate, solution.linear, noise_dof))
     result->misfits.push_back({misfit.source, misfit.considered, misfit.unit, misfit.size, misfit.F, misfit.dof1,
@@ -107,6 +128,15 @@ void AddMisfits(const Solution& solution, double noise_dof, Calibration* result)
 }  // namespace
 
 double PureError::sigma() const { return dof > 0 ? std::sqrt(sum_of_squares / dof) : 0; }
+
+std::vector<Eigen::VectorXd> ResidualsOf(const Solution& solution, size_t target) {
+  const std::vector<double> values = Values(solution.problem, solution.fit.estimate, target);
+  std::vector<Eigen::VectorXd> residuals;
+  for (const Block& view : solution.problem.targets[target].views)
+    if (view.prior.empty())
+      Block{view.rows, 1, {}, {}, {}}.Evaluate(values.data(), {}, &residuals.emplace_back(), nullptr);
+  return residuals;
+}
 
 Solution Solve(Problem problem, const Estimate& start, const RefineOptions& options) {
   Solution solution{std::move(problem), {}, {}, {}, {}, {}};
@@ -141,6 +171,7 @@ Calibration Summarize(const Solution& solution, const PureError& pure_error) {
   result.condition = solution.observability.condition;
   AddParameters(solution, headline, clustered, jackknife, &result);
   AddTargets(solution, pure_error, &result);
+  AddInfluences(solution, &result);
   if (!solution.variances) result.budget.front().u = result.sigma;
   // Views of many rows tell the variances better than their mere number.
   const double noise_dof = solution.variances && headline.dof.size() > 0

@@ -33,6 +33,9 @@ Solution Solve(Problem problem, const Estimate& start, const RefineOptions& opti
 // every view weighted with its own covariance. least: see EstimateVariances.
 Solution SolveWeighted(const Solution& plain, double least, const RefineOptions& options = {});
 
+// Of each view of a target, without weights and priors: in the units and the frame of the model.
+std::vector<Eigen::VectorXd> ResidualsOf(const Solution& solution, size_t target);
+
 // Numbers of a solution: parameters with all their uncertainties, covariance, budget, lack of fit, jackknife. u is
 // K V K' of everything that was estimated or declared where the fit is weighted; else clustered by view, and what all
 // views share. The model adds what only it can say.

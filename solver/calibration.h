@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 #include "solver/problem.h"
@@ -11,12 +12,23 @@ namespace scancal {
 
 std::vector<double> Plain(const Eigen::VectorXd& x);  // as a Calibration keeps it
 
+// Numbers for a figure: a row each, in the units of the columns; nan where there is none.
+struct NumberTable {
+  std::vector<std::string> columns;
+  std::vector<Unit> units;
+  std::vector<std::vector<double>> rows;
+  std::vector<std::string> names;  // of the rows; empty: they have none
+};
+using NumberTables = std::map<std::string, NumberTable>;
+
 struct Parameter {
   std::string name;
   Unit unit = Unit::kMm;
   Role role = Role::kHold;
   std::string source;  // its line in the budget; several parameters may share one
   double value = 0;
+  std::optional<double> nominal;  // what it is added to, where it is the error of a known number
+  double prior = 0, prior_u = 0;  // of an estimated one: mean and standard uncertainty; prior_u = 0: none
   // By what an estimated one is known: "data", or "prior" where the prior brings more than half of the information;
   // "held" or "considered" else.
   std::string determined;
@@ -44,6 +56,8 @@ struct TargetSummary {
   std::map<std::string, std::vector<double>> geometry;  // as the model describes it: "normal", "distance"
   double rms = 0;                                       // of the fit's own residual, mm
   ViewResiduals residuals;
+  NumberTables residual_tables;  // residuals where they were measured
+  NumberTables scene;            // where the target and the scanner were
 };
 
 struct GridMinimum {
@@ -66,10 +80,21 @@ struct BudgetLine {
   bool random = false;               // noise: anew in every view or point
 };
 
+// What the result depends on, as declared or found: all quantities that share a source. Parameters that are estimated,
+// and what only a target has for itself, are not among them.
+struct Influence {
+  std::string source;
+  Unit unit = Unit::kOne;
+  Scope scope = Scope::kSystem;
+  Role role = Role::kHold;  // estimate: its variance, from the residuals
+  double u = 0;             // rms over the quantities
+};
+
 // Known lengths that took no part in the calibration: measured minus known, mm.
 struct LengthCheck {
   std::vector<std::string> names;
   std::vector<double> before, after;  // as the nominal instrument shows them, and the calibrated one
+  std::vector<double> u;              // of the known lengths; 0: not known. Empty: of none
 };
 
 struct ErrorSize {  // of absolute values; 0 of none
@@ -115,15 +140,6 @@ struct MonteCarloSummary {
   std::vector<MonteCarloParameter> parameters;
 };
 
-// Points on a grid of readings that spans what was scanned, with the expanded uncertainties (95 %) that the calibration
-// gives them. Columns: the numbers of a reading, "X", "Y", "Z", then U along these and in the direction that is known
-// least.
-struct UncertaintyMap {
-  std::vector<std::string> columns;
-  std::vector<Unit> units;
-  std::vector<std::vector<double>> rows;
-};
-
 struct HashedFile {
   std::string file, sha256;
 };
@@ -145,9 +161,14 @@ struct Calibration {
   double condition = 0;
   std::map<std::string, double> weakest;  // components of the least determined direction
   std::vector<BudgetLine> budget;
+  std::vector<Influence> influences;
   std::vector<std::vector<double>> jackknife;  // per target: the estimated parameters without it
   MonteCarloSummary monte_carlo;
-  UncertaintyMap volume;
+  // Points on a grid of readings that spans what was scanned, with the expanded uncertainties (95 %) that the
+  // calibration gives them. Columns: the numbers of a reading, "X", "Y", "Z", then U along these and in the direction
+  // that is known least.
+  NumberTable volume;
+  NumberTables surface;                           // of the search's objective, around its minimum
   std::map<std::string, Eigen::Matrix4d> frames;  // rigid motions of the model, by name, mm
   LengthCheck check;
   int iterations = 0;

@@ -34,6 +34,13 @@ const char* Name(Role role) {
   return role == Role::kEstimate ? "estimate" : role == Role::kConsider ? "consider" : "hold";
 }
 
+const char* Name(Scope scope) {
+  return scope == Scope::kSystem   ? "system"
+         : scope == Scope::kTarget ? "target"
+         : scope == Scope::kView   ? "view"
+                                   : "point";
+}
+
 int Find(const Quantities& quantities, const std::string& name) {
   const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const auto& q) { return q.name == name; });
   return found == quantities.end() ? -1 : static_cast<int>(found - quantities.begin());

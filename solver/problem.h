@@ -19,8 +19,9 @@ enum class Scope {
 };  // who shares one value: all | a target | a view (one scan line, one pose) | nobody
 enum class Role { kEstimate, kConsider, kHold };
 
-const char* Name(Unit unit);  // "mm", "rad", "1"
-const char* Name(Role role);  // "estimate", "consider", "hold"
+const char* Name(Unit unit);    // "mm", "rad", "1"
+const char* Name(Role role);    // "estimate", "consider", "hold"
+const char* Name(Scope scope);  // "system", "target", "view", "point"
 
 // A number that the residuals depend on. The model declares name, unit and scope once; role, value and u come from the
 // user.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include "io/message.h"
 #include "io/progress.h"
+#include "models/flange_ball/flange_ball_figures.h"
 
 namespace scancal {
 namespace {
@@ -93,13 +94,15 @@ Result<Calibration> FlangeBallScanner::Calibrate(const RefineChoice& choice) con
     result.check.names.push_back("spacing at " + tool.name);
     result.check.before.push_back(SeatingOf(nominal, tool).spacing - Spacing());
     result.check.after.push_back(SeatingOf(robot, tool).spacing - Spacing());
+    result.check.u.push_back(declaration_.model.quantities()[FlangeBall::kSpacing].u);
   }
+  AddFlangeBallFigures(declaration_.model.links(), targets_, solution, &result);
   JudgeBall(robot, &result);
   if (!check_.empty()) JudgeHeldOut(MeanSpread(robot, targets_), MeanSpread(robot, check_), &result);
   return result;
 }
 
-Result<Comparison> FlangeBallScanner::Compare() const {
+Result<Comparison> FlangeBallScanner::Compare(const CompareChoice&) const {
   SCANCAL_ASSIGN_OR_RETURN(const Solution solution, Fit({}));
   Comparison comparison;
   comparison.columns = {{"calibrated with/mm"}, {"held out/mm"}, {"worst spacing/mm"}, {"worst, held out/mm"}};

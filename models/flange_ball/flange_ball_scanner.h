@@ -15,12 +15,13 @@ class FlangeBallScanner final : public Scanner {
   FlangeBallScanner(FlangeBallDeclaration declaration, std::vector<FlangeBall::Target> targets,
                     std::vector<FlangeBall::Target> check);
   std::string Describe() const override;
+  const Dataset& dataset() const override { return declaration_.dataset; }
   std::vector<std::filesystem::path> Files() const override;
   Result<Json> Data() const override;
   Result<Calibration> Calibrate(const RefineChoice& choice) const override;
   // The nominal robot, of which only the ball is fitted, and the refined one: how far the ball strays in its sockets,
   // where the tool was calibrated with and where it was held out.
-  Result<Comparison> Compare() const override;
+  Result<Comparison> Compare(const CompareChoice& choice) const override;
   Result<void> WriteSurface(const std::filesystem::path& file) const override;  // an Error: there is no search
 
  private:

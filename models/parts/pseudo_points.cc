@@ -2,6 +2,7 @@
 #include <glog/logging.h>
 #include <Eigen/QR>
 #include <cmath>
+#include <numbers>
 #include "models/parts/triangle.h"
 
 namespace scancal {
@@ -28,13 +29,14 @@ ProfileFactor Factor(std::span<const double> y, std::span<const double> z, std::
 
 ProfileFactor Merged(std::span<const ProfileFactor> parts) {
   CHECK(!parts.empty());
-  using Rows = Eigen::Matrix<double, 12, 3>;  // of four factors: all segments of a profile in one go
-  using Column = Eigen::Matrix<double, 12, 1>;
+  constexpr int kRows = 24;  // of eight factors: all segments of a profile in one go
+  using Rows = Eigen::Matrix<double, kRows, 3>;
+  using Column = Eigen::Matrix<double, kRows, 1>;
   ProfileFactor r = parts.front();
   for (size_t next = 1; next < parts.size();) {
     Rows stacked = Rows::Zero();
     stacked.topRows<3>() = r;
-    for (Eigen::Index row = 3; row < 12 && next < parts.size(); row += 3) stacked.middleRows<3>(row) = parts[next++];
+    for (Eigen::Index row = 3; row < kRows && next < parts.size(); row += 3) stacked.middleRows<3>(row) = parts[next++];
     r = Triangle<Column>(stacked.col(0), stacked.col(1), stacked.col(2));
   }
   return r;
@@ -50,6 +52,13 @@ std::array<PseudoPoint, 3> PseudoPoints(const ProfileFactor& factor) {
                      r(0, 1) + along * r(1, 1)};
   }
   return points;
+}
+
+std::array<PseudoPoint, 2> Ends(const ProfileFactor& factor) {
+  CHECK_GT(factor(0, 0), 0) << "a profile without points has no ends";
+  const Eigen::Matrix3d line = factor / factor(0, 0);  // of (1, z, y): means, then spreads
+  const double y = std::numbers::sqrt3 * line(1, 2), z = std::numbers::sqrt3 * line(1, 1);
+  return {{{1, line(0, 2) - y, line(0, 1) - z}, {1, line(0, 2) + y, line(0, 1) + z}}};
 }
 
 }  // namespace scancal

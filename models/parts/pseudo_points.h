@@ -26,4 +26,7 @@ ProfileFactor Merged(std::span<const ProfileFactor> parts);
 // Equal weights at Chebyshev's nodes on the profile's own line, what is left of y across it. Not for an empty profile.
 std::array<PseudoPoint, 3> PseudoPoints(const ProfileFactor& factor);
 
+// Both ends of an evenly spaced line with this mean and spread, sqrt(3) standard deviations from its middle.
+std::array<PseudoPoint, 2> Ends(const ProfileFactor& factor);
+
 }  // namespace scancal

@@ -63,14 +63,14 @@ ComparisonRow RowOf(const RobotData& data, const Method& method) {
 
 }  // namespace
 
-Result<Comparison> RobotScanner::Compare() const {
+Result<Comparison> RobotScanner::Compare(const CompareChoice&) const {
   const RobotData& data = declaration_.data;
   Comparison comparison;
   if (!data.check.empty()) comparison.columns = {{"max/mm"}, {"mean/mm"}};
   for (size_t k = 0; k < data.check.size() && k < kMostPositions; ++k)
     comparison.columns.push_back({std::to_string(k + 1), 2});
   comparison.columns.push_back({"rms of balls/mm"});
-  comparison.columns.push_back({"s", 2});
+  comparison.columns.push_back({"s", 2, true});
   const std::vector<Method> methods = {{"nominal robot, first hand-eye", [&] { return VirtualPointHandEye(data); }},
                                        {"Ren 2012, single sphere", [&] { return Ren2012(data); }},
                                        {"Mu 2017, distances", [&] { return Mu2017(data); }},

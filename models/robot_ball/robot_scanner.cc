@@ -4,6 +4,7 @@
 #include <cmath>
 #include "io/progress.h"
 #include "models/robot_ball/hand_eye.h"
+#include "models/robot_ball/robot_figures.h"
 #include "models/robot_ball/robot_fit.h"
 #include "models/robot_ball/spacing.h"
 #include "models/robot_ball/verdicts.h"
@@ -21,7 +22,10 @@ void AddGeometry(const RobotFit& fit, Calibration* result) {
 }
 
 void AddCheck(const RobotData& data, const RobotSetup& before, const RobotSetup& after, Calibration* result) {
-  for (const CheckLength& length : data.check) result->check.names.push_back(length.name);
+  for (const CheckLength& length : data.check) {
+    result->check.names.push_back(length.name);
+    result->check.u.push_back(length.u);
+  }
   result->check.before = SpacingErrors(data, before);
   result->check.after = SpacingErrors(data, after);
 }
@@ -51,6 +55,7 @@ Result<Calibration> RobotScanner::Calibrate(const RefineChoice& choice) const {
   result.residual = "ball centre";
   result.seconds = seconds.count();
   AddGeometry(fit, &result);
+  AddRobotFigures(data, fit, &result);
   SCANCAL_ASSIGN_OR_RETURN(const RobotSetup before, VirtualPointHandEye(data));
   AddCheck(data, before, fit.Setup(), &result);
   JudgeRobot(data, fit, &result);

@@ -11,11 +11,12 @@ class RobotScanner final : public Scanner {
   RobotScanner(RobotDeclaration declaration, RobotBall model)
       : declaration_(std::move(declaration)), model_(std::move(model)) {}
   std::string Describe() const override;
+  const Dataset& dataset() const override { return declaration_.dataset; }
   std::vector<std::filesystem::path> Files() const override { return declaration_.files; }
   Result<Json> Data() const override;
   Result<Calibration> Calibrate(const RefineChoice& choice) const override;
   // Nominal robot, the published methods, the refinement: errors of the check lengths, largest and mean first.
-  Result<Comparison> Compare() const override;
+  Result<Comparison> Compare(const CompareChoice& choice) const override;
   Result<void> WriteSurface(const std::filesystem::path& file) const override;  // an Error: there is no search
 
  private:

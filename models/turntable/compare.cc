@@ -1,9 +1,8 @@
-// The published search and the joint refinements on the same data, and the published figure of S.
+// The published search and the joint refinements on the same data.
 #include <fmt/format.h>
 #include <array>
 #include <chrono>
 #include <cmath>
-#include "io/output_file.h"
 #include "io/progress.h"
 #include "models/turntable/turntable_scanner.h"
 
@@ -12,6 +11,7 @@ namespace {
 
 constexpr double kSteps[] = {1, 0.1, 0.01};  // mm: the published one, and what finer ones bring
 constexpr double kMostNodes = 1e8;           // about a minute
+constexpr double kFewNodes = 1e5;            // as long as a refinement
 constexpr int kThreads = 2;
 
 class Stopwatch {
@@ -52,7 +52,7 @@ Comparison Tabulate(const std::vector<MethodResult>& results) {
                     {"ΔM/u"},
                     {"ΔN/u"},
                     {"nodes, iter.", 0},
-                    {"s", 2}},
+                    {"s", 2, true}},
                    {}};
   const MethodResult& reference = results.back();
   const auto um = [](std::optional<double> mm) { return ComparisonCell{mm ? std::optional(*mm * 1000) : mm}; };
@@ -102,7 +102,8 @@ std::optional<double> HeldOutRms(const std::vector<Placement>& placements, const
   return std::sqrt(squares / points);
 }
 
-MethodResult GridRow(const TurntableScanner& scanner, const TurntableStart& start, double step, PlaneFit kind) {
+MethodResult GridRow(const TurntableScanner& scanner, const TurntableStart& start, double step, PlaneFit kind,
+                     double most_nodes) {
   const std::string name =
       fmt::format("grid, {}, step {:g}", kind == PlaneFit::kVertical ? "as published" : "orthogonal", step);
   Progress progress(name);
@@ -113,7 +114,7 @@ MethodResult GridRow(const TurntableScanner& scanner, const TurntableStart& star
   row.quantisation = step / std::sqrt(12.0);
   const auto [rows, columns] = box.Nodes();
   row.effort = static_cast<double>(rows) * static_cast<double>(columns);
-  if (row.effort > kMostNodes) {
+  if (row.effort > most_nodes) {
     row.note = fmt::format("left out: {:.2g} nodes", row.effort);
     return row;
   }
@@ -180,11 +181,12 @@ MethodResult JointRow(const TurntableScanner& scanner, const TurntableStart& sta
 
 }  // namespace
 
-Result<Comparison> TurntableScanner::Compare() const {
+Result<Comparison> TurntableScanner::Compare(const CompareChoice& choice) const {
   SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
   std::vector<MethodResult> results;
   for (const PlaneFit kind : {PlaneFit::kVertical, PlaneFit::kOrthogonal})
-    for (const double step : kSteps) results.push_back(GridRow(*this, start, step, kind));
+    for (const double step : kSteps)
+      results.push_back(GridRow(*this, start, step, kind, choice.brief ? kFewNodes : kMostNodes));
   using enum Turntable::Residuals;
   results.push_back(JointRow(*this, start, "joint, point to plane", kPlane, false, {}));
   results.push_back(JointRow(*this, start, "joint, depth", kDepth, false, {}));
@@ -192,28 +194,6 @@ Result<Comparison> TurntableScanner::Compare() const {
       JointRow(*this, start, "joint, depth, weighted, tilts", kDepth, true, {Turntable::kTiltX, Turntable::kTiltY}));
   results.push_back(JointRow(*this, start, "joint, depth, weighted", kDepth, true, {}));
   return Tabulate(results);
-}
-
-Result<void> TurntableScanner::WriteSurface(const std::filesystem::path& file) const {
-  SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
-  SCANCAL_ASSIGN_OR_RETURN(OutputFile output, OutputFile::Create(file));
-  SCANCAL_RETURN_IF_ERROR(output.Write("M_mm,N_mm,S_published_mm,S_orthogonal_mm\n"));
-  const GridBox box = Box();
-  const auto [rows, columns] = box.Nodes();
-  const double targets = static_cast<double>(start.storeys.size());
-  for (int64_t i = 0; i < rows; ++i) {
-    for (int64_t j = 0; j < columns; ++j) {
-      const auto [M, N] = box.At(i, j);
-      double published = 0, orthogonal = 0;
-      for (const PlaneStorey& storey : start.storeys) {
-        published += storey.Rmse(M, N, PlaneFit::kVertical) / targets;
-        orthogonal += storey.Rmse(M, N, PlaneFit::kOrthogonal) / targets;
-      }
-      SCANCAL_RETURN_IF_ERROR(
-          output.Write(fmt::format("{:.10g},{:.10g},{:.10g},{:.10g}\n", M, N, published, orthogonal)));
-    }
-  }
-  return output.Commit();
 }
 
 }  // namespace scancal

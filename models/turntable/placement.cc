@@ -117,6 +117,15 @@ PureError Placement::Pure() const {
   return sum;
 }
 
+PureError PureOf(const std::vector<Placement>& placements) {
+  PureError sum;
+  for (const Placement& placement : placements) {
+    sum.sum_of_squares += placement.Pure().sum_of_squares;
+    sum.dof += placement.Pure().dof;
+  }
+  return sum;
+}
+
 void Clean(RawScan* scan) {
   for (RawProfile& profile : scan->profiles) OrderAlongLine(&profile);
   scan->off_line = SetAsideOffLine(&scan->profiles);

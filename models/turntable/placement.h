@@ -28,6 +28,8 @@ struct Placement {
   bool IsLidar() const { return !profiles.empty() && profiles.front().ranged.has_value(); }
 };
 
+PureError PureOf(const std::vector<Placement>& placements);  // of all of them
+
 // Orders the points of each profile along z and removes what is off its own line.
 void Clean(RawScan* scan);
 

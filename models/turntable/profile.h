@@ -8,12 +8,12 @@
 
 namespace scancal {
 
-inline constexpr int kSegments = 4;
+inline constexpr int kSegments = 8;
 
 struct Profile {
   double alpha = 0;  // rad, clockwise seen from +Z
   double count = 0;
-  // Of rows (1, z, y), for each quarter of the profile's extent in z that has points: where a smooth form of the plate
+  // Of rows (1, z, y), for each eighth of the profile's extent in z that has points: where a smooth form of the plate
   // bends a profile, its mean is not enough.
   std::vector<ProfileFactor> segments;
   ProfileFactor factor;                 // of all points: the segments, merged

@@ -1,6 +1,5 @@
 #include "models/turntable/smooth_columns.h"
 #include <Eigen/QR>
-#include <array>
 #include <cmath>
 #include <limits>
 #include "models/turntable/volume.h"
@@ -21,7 +20,7 @@ struct PlateFrame {
   Eigen::Vector3d across, up;
 };
 
-// Where the profile bends, its four segments show it.
+// Where the profile bends, its segments show it.
 std::vector<PseudoPoint> PointsOf(const Profile& profile) {
   std::vector<PseudoPoint> all;
   for (const ProfileFactor& segment : profile.segments) {
@@ -29,14 +28,6 @@ std::vector<PseudoPoint> PointsOf(const Profile& profile) {
     all.insert(all.end(), points.begin(), points.end());
   }
   return all;
-}
-
-// Both ends of a segment with evenly spread points: its pseudo-points end at sqrt(1.5) standard deviations, it at
-// sqrt(3).
-std::array<PseudoPoint, 2> EndsOf(const ProfileFactor& segment) {
-  const auto [first, middle, last] = PseudoPoints(segment);
-  const double y = std::sqrt(2.0) * (last.y - first.y) / 2, z = std::sqrt(2.0) * (last.z - middle.z);
-  return {{{1, middle.y - y, middle.z - z}, {1, middle.y + y, middle.z + z}}};
 }
 
 // Smallest and largest of every coordinate.
@@ -85,7 +76,7 @@ void AddForm(const std::vector<Profile>& profiles, const TurntablePose& pose, co
   Bounds plate;
   for (const Profile& profile : profiles)
     for (const ProfileFactor& segment : profile.segments)
-      for (const PseudoPoint& p : EndsOf(segment)) plate.Add(on_plate(profile, p));
+      for (const PseudoPoint& p : Ends(segment)) plate.Add(on_plate(profile, p));
   for (size_t k = 0; k < profiles.size(); ++k) {
     Turntable::View& view = (*views)[k];
     view.form = AsLine(profiles[k], view, kFormModes, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
@@ -95,16 +86,13 @@ void AddForm(const std::vector<Profile>& profiles, const TurntablePose& pose, co
   }
 }
 
-void AddBend(const std::vector<Placement>& placements, std::vector<Turntable::Target>* targets) {
-  const ScannedVolume volume = VolumeOf(placements);
-  for (size_t t = 0; t < placements.size(); ++t) {
-    for (size_t k = 0; k < placements[t].profiles.size(); ++k) {
-      Turntable::View& view = (*targets)[t].views[k];
-      view.bend = AsLine(placements[t].profiles[k], view, 1, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
-        const double eta = volume.Eta(p.y);
-        return Eigen::RowVectorXd::Constant(1, eta * eta);
-      });
-    }
+void AddBend(const ScannedVolume& volume, const std::vector<Profile>& profiles, std::vector<Turntable::View>* views) {
+  for (size_t k = 0; k < profiles.size(); ++k) {
+    Turntable::View& view = (*views)[k];
+    view.bend = AsLine(profiles[k], view, 1, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
+      const double eta = volume.Eta(p.y);
+      return Eigen::RowVectorXd::Constant(1, eta * eta);
+    });
   }
 }
 

@@ -1,7 +1,7 @@
 // What errors that curve along a profile do to its rows: the plate's form, the profiler's linearity.
 #pragma once
 #include <vector>
-#include "models/turntable/placement.h"
+#include "models/turntable/volume.h"
 
 namespace scancal {
 
@@ -14,7 +14,7 @@ namespace scancal {
 void AddForm(const std::vector<Profile>& profiles, const TurntablePose& pose, const Eigen::Vector3d& normal,
              double distance, std::vector<Turntable::View>* views);
 
-// `bend` of every view: eta^2, eta from -1 to 1 over the depths of all placements (volume.h).
-void AddBend(const std::vector<Placement>& placements, std::vector<Turntable::Target>* targets);
+// `bend` of every view: eta^2, eta from -1 to 1 over the depths of what all placements scanned.
+void AddBend(const ScannedVolume& volume, const std::vector<Profile>& profiles, std::vector<Turntable::View>* views);
 
 }  // namespace scancal

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 #include "io/progress.h"
-#include "models/parts/correlated_noise.h"
-#include "models/parts/median.h"
-#include "models/turntable/smooth_columns.h"
+#include "models/turntable/residual_tables.h"
+#include "models/turntable/scene.h"
+#include "models/turntable/surface.h"
 #include "models/turntable/verdicts.h"
 #include "models/turntable/volume.h"
 
@@ -16,17 +16,10 @@ namespace {
 
 constexpr int kRoundsOfReading = 4;
 
-TurntablePose PoseOf(const Quantities& quantities) {
-  return {quantities[Turntable::kM].value,      quantities[Turntable::kN].value,
-          quantities[Turntable::kTiltX].value,  quantities[Turntable::kTiltY].value,
-          quantities[Turntable::kScaleY].value, quantities[Turntable::kScaleZ].value};
-}
-
-std::vector<PlaneStorey> Storeys(const std::vector<Placement>& placements, const TurntablePose& tilts) {
-  std::vector<PlaneStorey> storeys;
-  for (const Placement& placement : placements)
-    storeys.emplace_back(Views(placement.profiles, Turntable::Residuals::kPlane), tilts);
-  return storeys;
+std::vector<double> Declared(const Turntable& model) {
+  std::vector<double> values;
+  for (const Quantity& quantity : model.quantities()) values.push_back(quantity.value);
+  return values;
 }
 
 bool SamePoints(const std::vector<Placement>& a, const std::vector<Placement>& b) {
@@ -44,39 +37,10 @@ GridBox BoxOf(const TurntableDeclaration& declaration, const Turntable& model) {
 }
 
 TurntablePose MiddleOf(const GridBox& box, const Turntable& model) {
-  TurntablePose pose = PoseOf(model.quantities());
+  TurntablePose pose = TurntablePose::Of(Declared(model));
   pose.M = (box.lower[0] + box.upper[0]) / 2;
   pose.N = (box.lower[1] + box.upper[1]) / 2;
   return pose;
-}
-
-PureError Pooled(const std::vector<Placement>& placements) {
-  PureError sum;
-  for (const Placement& placement : placements) {
-    sum.sum_of_squares += placement.Pure().sum_of_squares;
-    sum.dof += placement.Pure().dof;
-  }
-  return sum;
-}
-
-// Line correlation declared as a length: what it adds to the offset and the slope of a profile of the usual size.
-void DeclareLineCorrelation(const TurntableDeclaration& declaration, const std::vector<Placement>& placements,
-                            Turntable* model) {
-  if (!declaration.line_correlation) return;
-  const Quantity& noise = model->quantities()[Turntable::kNoiseY];
-  const double sigma = noise.role == Role::kConsider ? noise.u : std::max(Pooled(placements).sigma(), kLeastSigma_mm);
-  std::vector<double> counts, spreads;
-  for (const Placement& placement : placements) {
-    for (const Profile& profile : placement.profiles) {
-      counts.push_back(profile.count);
-      spreads.push_back(profile.factor(1, 1) / profile.factor(0, 0));
-    }
-  }
-  const LineNoise excess = ExcessOfCorrelatedNoise(*declaration.line_correlation, Median(counts), Median(spreads));
-  for (const auto& [k, u] : {std::pair{Turntable::kLineOffset, excess.offset}, {Turntable::kLineSlope, excess.slope}}) {
-    model->quantity(k).role = Role::kConsider;
-    model->quantity(k).u = sigma * u;
-  }
 }
 
 }  // namespace
@@ -86,7 +50,7 @@ TurntableScanner::TurntableScanner(TurntableDeclaration declaration, Turntable m
 
 GridBox TurntableScanner::Box() const { return BoxOf(declaration_, model_); }
 
-TurntablePose TurntableScanner::Nominal() const { return PoseOf(model_.quantities()); }
+TurntablePose TurntableScanner::Nominal() const { return TurntablePose::Of(Declared(model_)); }
 
 GridResult TurntableScanner::Search(const std::vector<PlaneStorey>& storeys) const {
   Progress progress("searching M, N");
@@ -99,7 +63,7 @@ GridResult TurntableScanner::Search(const std::vector<PlaneStorey>& storeys) con
 Result<TurntableStart> TurntableScanner::Initialize() const {
   TurntableStart start;
   const TurntablePose nominal = Nominal(), middle = MiddleOf(Box(), model_);
-  start.storeys = Storeys(placements_, nominal);
+  start.storeys = StoreysOf(placements_, nominal);
   SCANCAL_RETURN_IF_ERROR(CheckOrientations(model_.quantities(), placements_, start.storeys, middle));
   start.grid = Search(start.storeys);
   start.pose = nominal;
@@ -118,63 +82,6 @@ Result<TurntableStart> TurntableScanner::Initialize() const {
   return start;
 }
 
-TurntableFit TurntableScanner::Fit(const TurntablePose& pose, Turntable::Residuals residuals,
-                                   const std::vector<int>& estimate, std::optional<size_t> without,
-                                   int max_iterations) const {
-  TurntableFit fit;
-  std::vector<Placement> placements = placements_;
-  if (without) placements.erase(placements.begin() + static_cast<std::ptrdiff_t>(*without));
-  const std::vector<PlaneStorey> storeys = Storeys(placements, pose);
-  double rms = kLeastSigma_mm;
-  for (const PlaneStorey& storey : storeys) rms = std::max(rms, storey.Rmse(pose.M, pose.N, PlaneFit::kOrthogonal));
-  const double pure = Pooled(placements).sigma();
-  fit.sigma = residuals == Turntable::Residuals::kDepth && pure > kLeastSigma_mm ? pure : rms;
-  const auto model = std::make_shared<Turntable>(residuals);
-  for (int k = 0; k < std::ssize(model_.quantities()); ++k) model->quantity(k) = model_.quantities()[k];
-  for (const int k : estimate) model->quantity(k).role = Role::kEstimate;
-  DeclareLineCorrelation(declaration_, placements, model.get());
-  for (size_t t = 0; t < placements.size(); ++t) {
-    Turntable::Target& target = fit.targets.emplace_back();
-    target.name = placements[t].name;
-    target.views = Views(placements[t].profiles, residuals);
-    const auto [normal, distance] = storeys[t].FitPlane(pose.M, pose.N);
-    Turntable::SetPlane(normal, distance, &target);
-    if (residuals == Turntable::Residuals::kDepth)
-      AddForm(placements[t].profiles, pose, normal, distance, &target.views);
-  }
-  if (residuals == Turntable::Residuals::kDepth) AddBend(placements, &fit.targets);
-  Problem problem = MakeProblem<Turntable>(model, fit.targets);
-  problem.WeighEqually(fit.sigma);
-  Estimate from = NominalStart(problem);
-  Eigen::Index e = 0;
-  for (const int k : problem.With({Scope::kSystem}, Role::kEstimate)) {
-    if (k == Turntable::kM) from.system[e] = pose.M;
-    if (k == Turntable::kN) from.system[e] = pose.N;
-    ++e;
-  }
-  fit.solution = Solve(std::move(problem), from, {max_iterations});
-  return fit;
-}
-
-TurntableFit TurntableScanner::FitWeighted(const TurntableFit& plain, int max_iterations) const {
-  TurntableFit fit = plain;
-  fit.solution = SolveWeighted(plain.solution, kLeastSigma_mm, {max_iterations});
-  return fit;
-}
-
-TurntablePose TurntableFit::Pose() const {
-  Quantities quantities = solution.problem.quantities;
-  const std::vector<double> values = Values(solution.problem, solution.fit.estimate, 0);
-  for (size_t k = 0; k < quantities.size(); ++k) quantities[k].value = values[k];
-  return PoseOf(quantities);
-}
-
-std::pair<Eigen::Vector3d, double> TurntableFit::Plane(size_t target) const {
-  auto [normal, distance] = Turntable::Plane(targets[target], solution.fit.estimate.targets[target]);
-  if (distance >= 0) return {normal, distance};
-  return {-normal, -distance};
-}
-
 Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) const {
   const bool plane = choice.residual == "plane";
   if (!plane && !choice.residual.empty() && choice.residual != "depth")
@@ -191,8 +98,8 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
 
   // Within a profile the plain residual repeats as the depth does, seen at an angle: its pure error is not comparable.
-  Calibration result = Summarize(fit.solution, plane ? PureError{} : Pooled(placements_));
-  result.lack_of_fit.pure_error_sigma = Pooled(placements_).sigma();
+  Calibration result = Summarize(fit.solution, plane ? PureError{} : PureOf(placements_));
+  result.lack_of_fit.pure_error_sigma = PureOf(placements_).sigma();
   Progress progress("Monte Carlo");
   AddResampling(
       fit.solution, choice.monte_carlo, [&](double done) { progress.Show(done); }, &result);
@@ -206,8 +113,11 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
                  start.grid.best.value,
                  box.step,
                  static_cast<double>(start.grid.nodes)};
+  const ScannedVolume volume = VolumeOf(placements_);
   for (size_t t = 0; t < result.targets.size(); ++t) {
     TargetSummary& target = result.targets[t];
+    const std::vector<double> values = Values(fit.solution.problem, fit.solution.fit.estimate, t);
+    target.residual_tables = ResidualTables({placements_[t], fit.targets[t], values, volume});
     target.missing = placements_[t].missing;
     target.set_aside = placements_[t].set_aside;
     target.residuals = ResidualsOf(placements_[t]);
@@ -220,6 +130,8 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
         "point-to-plane residuals are biased by the noise along depth; the depth residual is not");
   JudgeTurntable(box, placements_, start, fit, &result);
   AddVolume(placements_, &result);
+  AddSurface(box, start.storeys, &result);
+  AddScene(placements_, &result);
   return result;
 }
 

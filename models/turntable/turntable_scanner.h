@@ -12,6 +12,9 @@
 
 namespace scancal {
 
+// One a placement.
+std::vector<PlaneStorey> StoreysOf(const std::vector<Placement>& placements, const TurntablePose& tilts);
+
 // Where refinement starts: the minimum of the grid search, or what a depth fit finds from there or, if that is better,
 // from the middle of the search interval.
 struct TurntableStart {
@@ -34,10 +37,11 @@ class TurntableScanner final : public Scanner {
   // model: carries the roles of the quantities.
   TurntableScanner(TurntableDeclaration declaration, Turntable model, std::vector<Placement> placements);
   std::string Describe() const override;
+  const Dataset& dataset() const override { return declaration_.dataset; }
   std::vector<std::filesystem::path> Files() const override;
   Result<Json> Data() const override;
   Result<Calibration> Calibrate(const RefineChoice& choice) const override;
-  Result<Comparison> Compare() const override;
+  Result<Comparison> Compare(const CompareChoice& choice) const override;
   Result<void> WriteSurface(const std::filesystem::path& file) const override;
 
   // M or N that are not estimated keep their value.

@@ -65,10 +65,9 @@ ScannedVolume VolumeOf(const std::vector<Placement>& placements) {
   for (const Placement& placement : placements) {
     for (const Profile& profile : placement.profiles) {
       Extend(profile.alpha, &volume.alpha);
-      const Eigen::Matrix3d line = profile.factor / profile.factor(0, 0);  // of (1, z, y): means, then spreads
-      for (const double end : {-std::numbers::sqrt3, std::numbers::sqrt3}) {
-        Extend(line(0, 1) + end * line(1, 1), &volume.z);
-        Extend(line(0, 2) + end * line(1, 2), &volume.y);
+      for (const PseudoPoint& end : Ends(profile.factor)) {
+        Extend(end.z, &volume.z);
+        Extend(end.y, &volume.y);
       }
     }
   }
@@ -87,7 +86,7 @@ std::optional<ScannedVolume> VolumeOf(const Calibration& calibration) {
 }
 
 void AddVolume(const std::vector<Placement>& placements, Calibration* calibration) {
-  UncertaintyMap& map = calibration->volume;
+  NumberTable& map = calibration->volume;
   map.columns = Columns();
   map.units.assign(map.columns.size(), Unit::kMm);
   map.units[0] = Unit::kRad;

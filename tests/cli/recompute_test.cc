@@ -41,8 +41,17 @@ TEST_F(RecomputeTest, TheSameDigitsWithoutTheScans) {
   const fs::path data = Path("data");
   Simulate(data, {"--profiles=40", "--points=20", "--outliers=0.02", "--missing=0.02", "--encoder_jitter=0.002"});
   Append(data / "dataset.yaml",
-         "parameters: {tilt_x: estimate, tilt_y: {consider: 0, u: 0.03}}\ninfluences: {scale_y: 1e-4, form: 0.001}\n");
+         "parameters: {tilt_x: estimate, tilt_y: {consider: 0, u: 0.03}}\ninfluences: {scale_y: 1e-4, form: 0.001}\n"
+         "certificate: {laboratory: \"M\u00FCller & <b>S\u00F6hne</b>\", number: 007, items: [{id: 1.5}]}\n");
   const Json old = Old(data);
+  EXPECT_EQ(old["certificate"]["number"], "007");
+  EXPECT_EQ(old["certificate"]["items"][0]["id"], 1.5);
+  EXPECT_EQ(old["compare"].size(), 10U);
+  EXPECT_THAT(old["compare"][2]["note"].get<std::string>(), HasSubstr("left out"));
+  EXPECT_EQ(old["compare"].dump().find("\"s\""), std::string::npos);  // no computing times
+  EXPECT_EQ(old["surface"]["near"]["rows"].size(), 41U * 41U);
+  EXPECT_GT(old["residuals"]["targets"][2]["cells"]["rows"].size(), 100U);
+  EXPECT_EQ(old["scene"]["targets"][0]["views"]["rows"].size(), 9U);
   EXPECT_GT(old["targets"][0]["set_aside"], 5);
   EXPECT_GT(old["residuals"]["targets"][0]["lags"].size(), 3U);
   ExpectSame(old, Refined(old_));
@@ -86,6 +95,16 @@ TEST_F(RecomputeTest, OfALidar) {
   const Json old = Old(data, 2);  // its noise is along depth, not along the range: a lack of fit that is found
   EXPECT_TRUE(old["data"]["targets"][0]["lidar"]);
   ExpectSame(old, Refined(old_, 2));
+}
+
+TEST_F(RecomputeTest, OfARobot) {
+  const fs::path data = Path("data");
+  Simulate(data, {"--model=robot-ball", "--stations=4", "--declare"});
+  const Json old = Old(data);
+  EXPECT_EQ(old["compare"].size(), 5U);
+  EXPECT_EQ(old["residuals"]["targets"][1]["poses"]["rows"].size(), 8U);
+  EXPECT_EQ(old["scene"]["targets"].size(), 4U);
+  ExpectSame(old, Refined(old_));
 }
 
 TEST_F(RecomputeTest, DoubtsRemain) {

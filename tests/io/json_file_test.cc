@@ -28,10 +28,25 @@ class JsonFileTest : public ::testing::Test {
 };
 
 TEST_F(JsonFileTest, WritesKeysInTheirOrderAndReadsThemBack) {
-  Json json = {{"scancal", 1}, {"model", "t\xC3\xBCr"}, {"a", {0.1, 1e-300, 3}}};
+  const Json json = Json::parse(
+      R"({"scancal": 1, "model": "tür", "a": [0.1, 1e-300], "b": {}, "c": [{"rows": [[1, null], []], "\"": true}]})");
   ASSERT_THAT(WriteError(json), IsEmpty());
-  EXPECT_EQ(folder_.Read("result.json"),
-            "{\n  \"scancal\": 1,\n  \"model\": \"t\xC3\xBCr\",\n  \"a\": [\n    0.1,\n    1e-300,\n    3\n  ]\n}\n");
+  EXPECT_EQ(folder_.Read("result.json"), R"({
+  "scancal": 1,
+  "model": "tür",
+  "a": [0.1,1e-300],
+  "b": {},
+  "c": [
+    {
+      "rows": [
+        [1,null],
+        []
+      ],
+      "\"": true
+    }
+  ]
+}
+)");
   const auto read = ReadJson(folder_.path() / "result.json");
   ASSERT_TRUE(read.ok()) << read.error().message;
   EXPECT_EQ(*read, json);

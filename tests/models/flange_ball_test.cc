@@ -114,7 +114,7 @@ TEST(FlangeBallTest, TheScannerFindsTheRobotAndChecksItWhereItWasNot) {
 
 TEST(FlangeBallTest, TheComparisonHoldsTheLastToolOut) {
   const FlangeBallScene scene = MakeScene({});
-  const Result<Comparison> comparison = ScannerOf(scene).Compare();
+  const Result<Comparison> comparison = ScannerOf(scene).Compare({});
   ASSERT_TRUE(comparison.ok()) << comparison.error().message;
   ASSERT_EQ(comparison->rows.size(), 2U);
   for (const ComparisonRow& row : comparison->rows) {
@@ -238,6 +238,52 @@ TEST_F(FlangeBallFilesTest, WhatTheModelCannotDoIsSaid) {
   EXPECT_THAT(kFlangeBall.transform(dataset_, other, cloud.get()).error().message, HasSubstr("\"turntable\""));
   other.model = "flange-ball";
   EXPECT_THAT(kFlangeBall.transform(dataset_, other, cloud.get()).error().message, HasSubstr("has no parameter"));
+}
+
+TEST(FlangeBallTest, ItsTablesSayWhatTheResultSays) {
+  const FlangeBallScene scene = MakeScene({});
+  const Result<Calibration> calibration = ScannerOf(scene).Calibrate({});
+  ASSERT_TRUE(calibration.ok()) << calibration.error().message;
+  RobotWithBall robot{scene.nominal, {}};
+  for (int k = 0; k < 3; ++k) robot.ball[k] = calibration->Find(std::string("ball_") + "xyz"[k])->value;
+  for (size_t k = 0; k < robot.links.size(); ++k) {
+    const auto add = [&](const std::string& name, double* number) {
+      const Parameter& parameter = *calibration->Find(name + std::to_string(k + 1));
+      EXPECT_EQ(parameter.nominal, *number);
+      *number += parameter.value;
+    };
+    Link& link = robot.links[k];
+    add("theta_", &link.theta);
+    add("d_", &link.d);
+    add("a_", &link.a);
+    add("alpha_", &link.alpha);
+    add("beta_", &link.beta);
+  }
+  for (size_t t = 0; t + 1 < scene.tools.size(); ++t) {
+    const TargetSummary& target = calibration->targets[t];
+    const NumberTable &poses = target.residual_tables.at("poses"), &balls = target.residual_tables.at("balls");
+    ASSERT_EQ(poses.rows.size(), scene.tools[t].views.size());
+    ASSERT_EQ(balls.rows.size(), poses.rows.size());
+    double squares = 0;
+    for (size_t v = 0; v < poses.rows.size(); ++v) {
+      const FlangeBall::View& view = scene.tools[t].views[v];
+      EXPECT_EQ(std::vector(poses.rows[v].begin(), poses.rows[v].begin() + 7), view.joints);
+      const Eigen::Vector3d flange = BaseFromFlange(robot.links, view.joints).translation();
+      EXPECT_LT((Eigen::Vector3d::Map(&poses.rows[v][7]) - flange).norm(), 1e-9);
+      EXPECT_EQ(poses.rows[v][10], view.socket);
+      const double square = Eigen::Vector3d::Map(&balls.rows[v][1]).squaredNorm();
+      EXPECT_NEAR(poses.rows[v][11], std::sqrt(square / 3), 1e-12);
+      squares += square;
+      const std::vector<double>& sight = target.scene.at("views").rows[v];
+      EXPECT_LT((Eigen::Vector3d::Map(&sight[0]) - flange).norm(), 1e-9);
+      EXPECT_LT((Eigen::Vector3d::Map(&sight[3]) - robot.InBase(view.joints)).norm(), 1e-9);
+    }
+    EXPECT_NEAR(std::sqrt(squares / 3 / static_cast<double>(poses.rows.size())), target.rms, 1e-9);
+    const auto& sockets = target.scene.at("outline").rows;
+    EXPECT_NEAR((Eigen::Vector3d::Map(&sockets[1][0]) - Eigen::Vector3d::Map(&sockets[0][0])).norm(),
+                target.geometry.at("spacing")[0], 1e-9);
+  }
+  EXPECT_EQ(calibration->check.u, std::vector{0.05});
 }
 
 }  // namespace

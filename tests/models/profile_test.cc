@@ -60,16 +60,16 @@ TEST(CompressProfile, ItsSegmentsMergeToTheFactorOfAllPoints) {
   }
 }
 
-TEST(CompressProfile, ItsSegmentsAreExactForWhatDiffersFromQuarterToQuarter) {
+TEST(CompressProfile, ItsSegmentsAreExactForWhatDiffersFromOneToTheOther) {
   const Points points = Line(500, 0.05, 2);
   const Profile profile = Compressed(points);
-  ASSERT_EQ(profile.segments.size(), 4U);
-  const double width = (points.z.back() - points.z.front()) / 4;
-  for (int k = 0; k < 4; ++k) {
+  ASSERT_EQ(profile.segments.size(), 8U);
+  const double width = (points.z.back() - points.z.front()) / 8;
+  for (int k = 0; k < 8; ++k) {
     const double a = -75 + 0.02 * k, b = -0.3 + 1e-4 * k;
     double exact = 0;
     for (size_t i = 0; i < points.z.size(); ++i)
-      if (std::clamp(static_cast<int>((points.z[i] - points.z.front()) / width), 0, 3) == k)
+      if (std::clamp(static_cast<int>((points.z[i] - points.z.front()) / width), 0, 7) == k)
         exact += std::pow(a + b * points.z[i] + points.y[i], 2);
     double compressed = 0;
     for (const PseudoPoint& p : PseudoPoints(profile.segments[static_cast<size_t>(k)]))
@@ -92,7 +92,7 @@ TEST(CompressProfile, TheOrderOfPointsDoesNotMatter) {
   }
 }
 
-TEST(CompressProfile, QuartersWithoutPointsAreLeftOut) {
+TEST(CompressProfile, SegmentsWithoutPointsAreLeftOut) {
   Points points = Line(100, 0.05, 5);
   for (size_t i = 0; i < 100; ++i) points.z[i] = i < 50 ? -100 + 0.1 * static_cast<double>(i) : 100;
   const Profile profile = Compressed(points);
