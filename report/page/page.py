@@ -18,7 +18,8 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 # The order of the page. A section whose template renders to nothing (it has no data) takes no number.
 SECTIONS = ["verdict", "result", "links", "budget", "comparison", "residuals", "surface", "correlation",
-            "leave_one_out", "monte_carlo", "scene", "coverage_of_poses", "lengths", "volume", "considered", "inputs"]
+            "leave_one_out", "monte_carlo", "scene", "coverage_of_poses", "lengths", "volume", "considered",
+            "certificate", "inputs"]
 
 
 class Figures:
@@ -48,7 +49,7 @@ def render_page(calibration: Calibration, previous: Calibration | None, language
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True,
                                      undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     for rule in (notation.significant, notation.concise, notation.to_last_digit_of, notation.count, notation.dof,
-                 notation.percent):
+                 notation.percent, notation.p_value):
         environment.filters[rule.__name__] = _in(language, rule)
     environment.globals |= {"t": language, "c": calibration, "previous": previous,
                             "figure": Figures(calibration, language), "json": json}
@@ -57,6 +58,7 @@ def render_page(calibration: Calibration, previous: Calibration | None, language
                 for name in SECTIONS if (TEMPLATES / "sections" / f"{name}.html").exists()]
     html = environment.get_template("page.html").render(
         sections=[(name, Markup(body)) for name, body in rendered if body],
+        **sections.content("head", calibration, previous, language),
         fonts=Markup(font_faces()), css=Markup((TEMPLATES / "page.css").read_text(encoding="utf-8")))
     if sys.stderr.isatty():
         print("\r\033[K", end="", file=sys.stderr, flush=True)

@@ -1,0 +1,41 @@
+"""`certificate:` of dataset.yaml: what only the laboratory can say. It is passed through as given, never completed."""
+
+# In this order on the page, with words of [certificate.key]; other keys follow under their own name.
+KNOWN = ["identification", "order", "country", "performed", "begin", "end", "place", "received", "issued", "item", "name",
+         "role", "signs", "manufacturer", "model", "issuer", "value", "identifications", "laboratory", "code", "customer",
+         "address", "street", "number", "post_office_box", "postcode", "city", "state", "further", "email", "phone", "fax",
+         "persons", "equipment", "certificate", "procedure", "conditions", "statements"]
+
+Path = tuple[str | int, ...]
+
+
+def leaves(given: object, path: Path = ()) -> list[tuple[Path, str]]:
+    """Every single value with the keys that lead to it; empty ones are left out."""
+    if isinstance(given, dict):
+        keys = sorted(given, key=lambda key: KNOWN.index(key) if key in KNOWN else len(KNOWN))
+        return [leaf for key in keys for leaf in leaves(given[key], (*path, key))]
+    if isinstance(given, list):
+        return [leaf for k, each in enumerate(given) for leaf in leaves(each, (*path, k))]
+    text = as_text(given)
+    return [(path, text)] if text else []
+
+
+def as_text(given: object) -> str:
+    if given is None or isinstance(given, (dict, list)):
+        return ""
+    return str(given).lower() if isinstance(given, bool) else str(given).strip()
+
+
+def label(path: Path, language) -> str:
+    """item: identifications: 2: value, in words; an only item of a list needs no number."""
+    return ", ".join(str(key + 1) if isinstance(key, int) else
+                     language(f"certificate.key.{key}") if key in KNOWN else str(key) for key in path)
+
+
+def rows(certificate: object, language) -> list[tuple[str, str, str]]:
+    """(what, which part of it, as given); what is empty where it is that of the row above."""
+    found, last = [], None
+    for path, text in leaves(certificate):
+        found.append((label(path[:1], language) if path[:1] != last else "", label(path[1:], language), text))
+        last = path[:1]
+    return found

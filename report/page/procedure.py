@@ -1,0 +1,57 @@
+"""What was done, in sentences: of the page's head and of the certificate."""
+from calibration import Calibration
+from language import Language
+from notation import count, significant
+
+FEW_NAMES = 6
+
+
+def sentences(c: Calibration, t: Language) -> list[str]:
+    told = [_seen(c, t), _fitted(c, t), t(f"procedure.method.{c['model']}")]
+    trials = (c.get("montecarlo") or {}).get("trials")
+    if trials:
+        told.append(t("procedure.monte_carlo", trials=t.number(count(trials))))
+    return told
+
+
+def has_equal_weights(c: Calibration) -> bool:
+    return any(line["source"].startswith("residuals, clustered") for line in c.get("budget") or [])
+
+
+def _seen(c: Calibration, t: Language) -> str:
+    targets, words = c.get("targets") or [], f"procedure.{c['model']}"
+    names = ", ".join(str(target["name"]) for target in targets)
+    key = "one" if len(targets) == 1 else "few" if len(targets) <= FEW_NAMES else "many"
+    numbers = {"views": _views(c)} | {what: sum(target.get(what) or 0 for target in targets)
+                                      for what in ("points", "missing", "set_aside")}
+    counted = [t(f"{words}.{what}", count=t.number(count(number))) for what, number in numbers.items() if number]
+    return t(f"{words}.seen", targets=t(f"{words}.targets_{key}", count=len(targets), names=names),
+             counted=", ".join(counted))
+
+
+def _views(c: Calibration) -> float:
+    """Profiles or poses; 0: this file does not say."""
+    data = c.get("data") or {}
+    profiles = sum(target.get("profiles") or 0 for target in data.get("targets") or [])
+    residuals = (c.get("residuals") or {}).get("targets") or []
+    return profiles or sum(len((target.get("poses") or {}).get("rows") or []) for target in residuals)
+
+
+def _fitted(c: Calibration, t: Language) -> str:
+    names = [parameter["name"] for parameter in c.estimated]
+    weights = "equal" if has_equal_weights(c) else "estimated"
+    return t(f"procedure.{c['model']}.fitted",
+             names=", ".join(names) if len(names) <= FEW_NAMES else t("procedure.many_names", count=len(names)),
+             residual=t.translated(str(c.get("residual") or "–"))[0], weights=t(f"procedure.weights_{weights}"),
+             iterations=c.get("iterations") or "–", start=_start(c, t))
+
+
+def _start(c: Calibration, t: Language) -> str:
+    grid, search = c.get("grid") or {}, c.table("surface", "search")
+    if not grid.get("nodes"):
+        return ""
+    intervals = [t("procedure.interval", name=name, lower=t.number(significant(search[name].min(), 4)),
+                   upper=t.number(significant(search[name].max(), 4))) for name in ("M", "N")
+                 if name in search and len(search)]
+    over = t("procedure.over", intervals=", ".join(intervals)) if intervals else ""
+    return t("procedure.start", over=over, step=t.number(significant(grid.get("step"), 2)), nodes=count(grid["nodes"]))
