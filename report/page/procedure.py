@@ -1,13 +1,14 @@
 """What was done, in sentences: of the page's head and of the certificate."""
 from calibration import Calibration
 from language import Language
-from notation import count, significant
+from notation import count
 
 FEW_NAMES = 6
 
 
 def sentences(c: Calibration, t: Language) -> list[str]:
-    told = [_seen(c, t), _fitted(c, t), t(f"procedure.method.{c['model']}")]
+    told = [_seen(c, t)] if c.get("targets") else []
+    told += [_fitted(c, t), t(f"procedure.method.{c['model']}")]
     trials = (c.get("montecarlo") or {}).get("trials")
     if trials:
         told.append(t("procedure.monte_carlo", trials=t.number(count(trials))))
@@ -19,7 +20,7 @@ def has_equal_weights(c: Calibration) -> bool:
 
 
 def _seen(c: Calibration, t: Language) -> str:
-    targets, words = c.get("targets") or [], f"procedure.{c['model']}"
+    targets, words = c["targets"], f"procedure.{c['model']}"
     names = ", ".join(str(target["name"]) for target in targets)
     key = "one" if len(targets) == 1 else "few" if len(targets) <= FEW_NAMES else "many"
     numbers = {"views": _views(c)} | {what: sum(target.get(what) or 0 for target in targets)
@@ -50,8 +51,7 @@ def _start(c: Calibration, t: Language) -> str:
     grid, search = c.get("grid") or {}, c.table("surface", "search")
     if not grid.get("nodes"):
         return ""
-    intervals = [t("procedure.interval", name=name, lower=t.number(significant(search[name].min(), 4)),
-                   upper=t.number(significant(search[name].max(), 4))) for name in ("M", "N")
-                 if name in search and len(search)]
-    over = t("procedure.over", intervals=", ".join(intervals)) if intervals else ""
-    return t("procedure.start", over=over, step=t.number(significant(grid.get("step"), 2)), nodes=count(grid["nodes"]))
+    intervals = [t("procedure.interval", name=name, lower=t.number(f"{search[name].min():g}"),
+                   upper=t.number(f"{search[name].max():g}")) for name in ("M", "N") if name in search and len(search)]
+    return t("procedure.start_over" if intervals else "procedure.start", intervals=", ".join(intervals),
+             step=t.number(f"{grid.get('step') or 0:g}"), nodes=count(grid["nodes"]))
