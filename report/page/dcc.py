@@ -11,7 +11,7 @@ from pathlib import Path
 import jinja2
 
 import procedure
-from administration import label
+from administration import as_text, label
 from calibration import Calibration, Complaint
 from dcc_administration import Administration, read_administration
 from language import Language
@@ -78,7 +78,7 @@ def _content(c: Calibration, t: Language, given: dict) -> dict[str, object]:
     return {"quantities": [_quantity(parameter, t) for parameter in c.estimated], "columns": _columns(c["covariance"], units),
             "probability": _factor(c.get("coverage_probability") or 0.95), "joint_k": _factor(c["joint"]["k"]),
             "budget": [_source(line, c) for line in c.get("budget") or []],
-            "trials": (c.get("montecarlo") or {}).get("trials"), "procedure": procedure.sentences(c, t),
+            "version": as_text(c.get("version")) or "–", "trials": (c.get("montecarlo") or {}).get("trials"), "procedure": procedure.sentences(c, t),
             "warnings": [t.translated(str(warning)) for warning in c.get("warnings") or []],
             "rest": [(label(path, t), text) for path, text in given["rest"]]}
 
