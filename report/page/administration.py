@@ -1,10 +1,11 @@
 """`certificate:` of dataset.yaml: what only the laboratory can say. It is passed through as given, never completed."""
 
 # In this order on the page, with words of [certificate.key]; other keys follow under their own name.
-KNOWN = ["identification", "order", "country", "performed", "begin", "end", "place", "received", "issued", "item", "name",
-         "role", "signs", "manufacturer", "model", "issuer", "value", "identifications", "laboratory", "code", "customer",
-         "address", "street", "number", "post_office_box", "postcode", "city", "state", "further", "email", "phone", "fax",
-         "persons", "equipment", "certificate", "procedure", "conditions", "statements"]
+KNOWN = ["identification", "order", "performed", "begin", "end", "place", "received", "issued", "item", "name",
+         "role", "signs", "manufacturer", "model", "identifications", "issuer", "value", "laboratory", "code",
+         "customer", "address", "street", "number", "post_office_box", "postcode", "city", "state", "country",
+         "further", "email", "phone", "fax", "persons", "equipment", "certificate", "procedure", "conditions",
+         "statements"]
 
 Path = tuple[str | int, ...]
 
@@ -26,16 +27,26 @@ def as_text(given: object) -> str:
     return str(given).lower() if isinstance(given, bool) else str(given).strip()
 
 
-def label(path: Path, language) -> str:
-    """item: identifications: 2: value, in words; an only item of a list needs no number."""
-    return ", ".join(str(key + 1) if isinstance(key, int) else
-                     language(f"certificate.key.{key}") if key in KNOWN else str(key) for key in path)
+def label(path: Path, certificate: object, language) -> str:
+    """item: identifications: 2: value, in words; the only item of a list needs no number."""
+    words, at = [], certificate
+    for key in path:
+        if isinstance(key, str):
+            words.append(language(f"certificate.key.{key}") if key in KNOWN else key)
+        elif len(at) > 1:
+            words.append(str(key + 1))
+        at = at[key]
+    return ", ".join(words)
 
 
 def rows(certificate: object, language) -> list[tuple[str, str, str]]:
     """(what, which part of it, as given); what is empty where it is that of the row above."""
     found, last = [], None
     for path, text in leaves(certificate):
-        found.append((label(path[:1], language) if path[:1] != last else "", label(path[1:], language), text))
+        what, whole = label(path[:1], certificate, language), label(path, certificate, language)
+        part = whole.removeprefix(what).removeprefix(", ")
+        if path[:1] and path[0] in KNOWN:
+            what = what[:1].upper() + what[1:]
+        found.append((what if path[:1] != last else "", part, text))
         last = path[:1]
     return found

@@ -80,7 +80,7 @@ def _content(c: Calibration, t: Language, given: dict) -> dict[str, object]:
             "budget": [_source(line, c) for line in c.get("budget") or []],
             "version": as_text(c.get("version")) or "–", "trials": (c.get("montecarlo") or {}).get("trials"), "procedure": procedure.sentences(c, t),
             "warnings": [t.translated(str(warning)) for warning in c.get("warnings") or []],
-            "rest": [(label(path, t), text) for path, text in given["rest"]]}
+            "rest": [(label(path, c["certificate"], t), text) for path, text in given["rest"]]}
 
 
 def _quantity(parameter: dict, t: Language) -> dict[str, object]:

@@ -125,7 +125,7 @@ class ProcedureTest(unittest.TestCase):
         self.assertIn("scanned 2 flat targets (left, right): 120 profiles, 3\N{NARROW NO-BREAK SPACE}000 points used, "
                       "5 without return, 3 set aside.", told)
         self.assertIn("M, N, tilt_x and the plane of every target", told)
-        self.assertIn("every view weighted", told)
+        self.assertIn("every view (profile or pose) weighted", told)
         self.assertIn("in 7 iterations; the start came from a grid search in steps of 1 mm (651 nodes).", told.replace(
             "\N{NO-BREAK SPACE}", " "))
         self.assertNotIn("Monte Carlo", told)
@@ -154,6 +154,8 @@ class CertificateTest(unittest.TestCase):
         self.assertIn("Laboratory name Beispiel-Labor", shown)
         self.assertIn("address, city Braunschweig", shown)
         self.assertIn("Item name Liniensensor <am> Drehtisch", shown)
+        self.assertIn("identification, value 007", shown)  # the only one: without a number
+        self.assertIn("Responsible 1, name A. Berg", shown)
         self.assertIn("room B 12", shown)  # under its own name
         self.assertIn("data for a calibration certificate after ISO/IEC 17025, 7.8", shown)
         given = copy.deepcopy(CERTIFICATE)
