@@ -27,14 +27,9 @@ class Language:
         return self._find(key).format(**values)
 
     def named(self, key: str, word: str) -> str:
-        """A word of calibration.json (a column, a reason) in this language, from the table of that key; one that the
-        table does not know stays as it is. Numbers in it stand in the table as #: "step #" for "step 0.1"."""
-        number = r"\d+(?:\.\d+)?(?:e[+-]?\d+)?"
-        found = self._find_table(key).get(re.sub(number, "#", word))
-        if found is None:
-            return word
-        numbers = iter(re.findall(number, word))
-        return re.sub("#", lambda _: self.number(next(numbers)), found)
+        """A name in calibration.json (of a column, a unit) as readers know it, from the table of that key; one that the
+        table does not know stays as it is."""
+        return self._find_table(key).get(word, word)
 
     def _find_table(self, key: str) -> dict:
         found = self._texts

@@ -68,6 +68,14 @@ def new_figure(height: float, rows: int = 1, columns: int = 1, **layout) -> tupl
     return pyplot.subplots(rows, columns, figsize=(WIDTH, height), **layout)
 
 
+def legend_above(figure: Figure, axes, columns: int) -> None:
+    """What is labelled in these axes, in a strip of its own over the whole figure."""
+    handles, labels = axes.get_legend_handles_labels()
+    strip = 0.05 + 0.19 * -(-len(labels) // columns)  # inches
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - strip / figure.get_figheight()))
+    figure.legend(handles, labels, loc="upper left", ncols=columns, borderaxespad=0)
+
+
 def to_svg(figure: Figure, name: str, title: str, language) -> str:
     """The figure as an <svg> element to stand in the page: the same bytes for the same figure, no fixed size, its ids
     its own, its title for those who cannot see it."""
