@@ -1,9 +1,9 @@
 """What was done, in sentences: of the page's head and of the certificate."""
 from calibration import Calibration
 from language import Language
-from notation import count
+from notation import count, shortened
 
-FEW_NAMES = 6
+FEW_NAMES, LONGEST_NAME = 6, 40
 
 
 def sentences(c: Calibration, t: Language) -> list[str]:
@@ -21,7 +21,7 @@ def has_equal_weights(c: Calibration) -> bool:
 
 def _seen(c: Calibration, t: Language) -> str:
     targets, words = c["targets"], f"procedure.{c['model']}"
-    names = ", ".join(str(target["name"]) for target in targets)
+    names = ", ".join(shortened(str(target["name"]), LONGEST_NAME) for target in targets)
     key = "one" if len(targets) == 1 else "few" if len(targets) <= FEW_NAMES else "many"
     numbers = {"views": _views(c)} | {what: sum(target.get(what) or 0 for target in targets)
                                       for what in ("points", "missing", "set_aside")}

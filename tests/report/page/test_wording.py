@@ -33,8 +33,8 @@ class VerdictTest(unittest.TestCase):
 
     def test_every_warning_and_every_reason_in_words(self):
         shown = text_of("verdict", calibration(warnings=[SENTENCE]))
-        self.assertIn("can be used with what follows in mind", shown)
-        self.assertNotIn("Nothing in the data", shown)
+        self.assertIn("but it comes with these reservations", shown)
+        self.assertNotIn("speaks against", shown)
         self.assertIn(SENTENCE, shown)
         shown = text_of("verdict", calibration(status="unreliable", unreliable=["first", "second"], warnings=["third"]))
         self.assertIn("Do not rely on this result. Why: first Why: second third", shown)
@@ -101,7 +101,7 @@ class ResultTest(unittest.TestCase):
         shown = text_of("result", robot())
         self.assertIn("hand_eye_rx = 1.000(10) mm", shown)
         self.assertNotIn("theta_1 =", shown)
-        self.assertIn("12 numbers of the links stand in Links and hand-eye", shown)
+        self.assertIn("The 12 link errors stand in Links and hand-eye", shown)
 
     def test_unreliable_numbers_are_marked(self):
         self.assertIn("For diagnosis only", text_of("result", calibration(status="unreliable")))
