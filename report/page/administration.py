@@ -1,8 +1,8 @@
-"""`certificate:` of dataset.yaml: what only the laboratory can say. It is passed through as given, never completed."""
+"""`certificate:` of dataset.yaml: what only the laboratory can say; passed through, never completed."""
 
 # In this order on the page, with words of [certificate.key]; other keys follow under their own name.
-KNOWN = ["identification", "order", "performed", "begin", "end", "place", "received", "issued", "item", "name",
-         "role", "signs", "manufacturer", "model", "identifications", "issuer", "value", "laboratory", "code",
+KNOWN = ["identification", "order", "performed", "begin", "end", "place", "received", "issued", "item",
+         "name", "role", "signs", "manufacturer", "model", "identifications", "issuer", "value", "laboratory", "code",
          "customer", "address", "street", "number", "post_office_box", "postcode", "city", "state", "country",
          "further", "email", "phone", "fax", "persons", "equipment", "certificate", "procedure", "conditions",
          "statements"]

@@ -1,11 +1,12 @@
 """As found and as left: this calibration beside an earlier one of the same instrument.
 
-E_n = (x_left - x_found) / sqrt(U_left^2 + U_found^2) (ISO 13528): at most 1 in size where the two agree within their
-expanded uncertainties. It holds for independent results only; what speaks against that is told with it.
+E_n = (x_left - x_found) / sqrt(U_left^2 + U_found^2) (ISO 13528): at most 1 in size where the two agree
+within their expanded uncertainties. It holds for independent results only; what speaks against that is told with it.
 """
 import math
 from dataclasses import dataclass
 
+from administration import leaves
 from calibration import Calibration
 
 
@@ -38,7 +39,8 @@ def doubts(found: Calibration, left: Calibration) -> list[Doubt]:
     told += [Doubt(key, (str(a), str(b))) for key, a, b in (
         ("model", found["model"], left["model"]), ("residual", found.get("residual"), left.get("residual")),
         ("item", _item(found), _item(left))) if a and b and a != b]
-    told += [Doubt(f"{which}_unreliable") for which, c in (("found", found), ("left", left)) if not c.is_reliable]
+    told += [Doubt(f"{which}_unreliable") for which, c in (("found", found), ("left", left))
+             if not c.is_reliable]
     told += [Doubt(key, tuple(names)) for key, names in (
         ("missing", _missing(found, left)), ("roles", _in_other_roles(found, left)),
         ("nominal", _with_other_nominals(found, left)), ("inputs", _common_inputs(found, left)),
@@ -59,11 +61,8 @@ def _change(found: dict, left: dict) -> Change:
 
 def _item(c: Calibration) -> str:
     """What the certificate calls the thing that was calibrated, if it does."""
-    certificate = c.get("certificate")
-    item = certificate.get("item") if isinstance(certificate, dict) else None
-    identifications = item.get("identifications") if isinstance(item, dict) else None
-    return ", ".join(str(each["value"]) for each in identifications if isinstance(each, dict) and "value" in each) \
-        if isinstance(identifications, list) else ""
+    return ", ".join(text for path, text in leaves(c.get("certificate"))
+                     if path[:2] == ("item", "identifications") and path[-1] == "value")
 
 
 def _missing(found: Calibration, left: Calibration) -> list[str]:
@@ -73,18 +72,21 @@ def _missing(found: Calibration, left: Calibration) -> list[str]:
 
 
 def _in_other_roles(found: Calibration, left: Calibration) -> list[str]:
-    """Estimated in one and not in the other, or held at another value: the rest of the parameters answers to that."""
+    """Estimated in one and not in the other, or held at another value: the others answer to that."""
     other = []
     for parameter in left["parameters"]:
         earlier = found.parameter(parameter["name"])
-        if earlier and (earlier["role"] != parameter["role"]
-                        or parameter["role"] != "estimate" and earlier.get("value") != parameter.get("value")):
+        if not earlier:
+            continue
+        moved = parameter["role"] != "estimate" and earlier.get("value") != parameter.get("value")
+        if earlier["role"] != parameter["role"] or moved:
             other.append(parameter["name"])
     return other
 
 
 def _with_other_nominals(found: Calibration, left: Calibration) -> list[str]:
-    return [parameter["name"] for parameter in left["parameters"] if (earlier := found.parameter(parameter["name"]))
+    return [parameter["name"] for parameter in left["parameters"]
+            if (earlier := found.parameter(parameter["name"]))
             and earlier.get("nominal") != parameter.get("nominal")]
 
 
@@ -97,6 +99,6 @@ def _common_inputs(found: Calibration, left: Calibration) -> list[str]:
 
 def _common_influences(found: Calibration, left: Calibration) -> list[str]:
     """Systematic and declared in both: if it is the same plate or artifact, it is also the same error."""
-    declared = [[line["source"] for line in c.get("budget") or [] if line.get("type") == "B" and not line.get("random")]
-                for c in (found, left)]
+    declared = [[line["source"] for line in c.get("budget") or []
+                 if line.get("type") == "B" and not line.get("random")] for c in (found, left)]
     return [source for source in declared[1] if source in declared[0]]

@@ -1,4 +1,4 @@
-"""--dcc: a Digital Calibration Certificate (PTB's schema 3.3.0 with D-SI 2.2.1, https://ptb.de/dcc) of a calibration.
+"""--dcc: the Digital Calibration Certificate of a calibration (https://ptb.de/dcc, 3.3.0 with D-SI 2.2.1).
 
 Lengths are written in metre, angles in radian. A number is the shortest decimal that stands for the one in
 calibration.json, shifted by whole powers of ten: no digit is rounded or added.
@@ -24,7 +24,7 @@ NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def write_certificate(c: Calibration, t: Language, file: Path) -> None:
-    """Raises Complaint, and writes nothing, if the calibration or what the laboratory gave does not make a certificate."""
+    """Raises Complaint, and writes nothing, if result or laboratory do not give enough."""
     write_whole(file, certificate(c, t).encode("utf-8"))
 
 
@@ -33,13 +33,14 @@ def certificate(c: Calibration, t: Language) -> str:
     administration = Administration(c.get("certificate"))
     given = read_administration(administration)
     if administration.complaints:
-        raise Complaint(f"{c.file}: a Digital Calibration Certificate needs more than certificate: of dataset.yaml says; "
-                        "complete it there and run scancal refine again:\n" +
-                        "\n".join(f"  {complaint}" for complaint in administration.complaints))
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True, trim_blocks=True,
-                                     lstrip_blocks=True, undefined=jinja2.StrictUndefined, keep_trailing_newline=True,
-                                     finalize=_as_xml)
-    return environment.get_template("certificate.xml").render(t=t, c=c, given=given, number=number, **_content(c, t, given))
+        raise Complaint("\n  ".join([
+            f"{c.file}: a Digital Calibration Certificate needs more than certificate: of dataset.yaml says; "
+            "complete it there and run scancal refine again:", *administration.complaints]))
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True,
+                                     trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
+                                     undefined=jinja2.StrictUndefined, finalize=_as_xml)
+    template = environment.get_template("certificate.xml")
+    return template.render(t=t, c=c, given=given, **_content(c, t, given))
 
 
 def number(value: float, power: int = 0) -> str:
@@ -56,7 +57,8 @@ def _check_result(c: Calibration) -> None:
     if not c.is_reliable:
         reasons = c.get("unreliable") or ["it says so of itself"]
         more = f" (and {len(reasons) - 1} more)" if len(reasons) > 1 else ""
-        raise Complaint(f"{c.file}: no certificate is written of a result that should not be relied on: {reasons[0]}{more}")
+        raise Complaint(f"{c.file}: no certificate is written of a result that should not be relied on: "
+                        f"{reasons[0]}{more}")
     if not c.estimated:
         raise Complaint(f"{c.file}: no parameter was estimated, there is nothing to certify")
     for parameter in c.estimated:
@@ -66,7 +68,8 @@ def _check_result(c: Calibration) -> None:
                             "expected a whole result; run scancal refine again")
     joint = (c.get("joint") or {}).get("k")
     if not _is_number(joint) or not all(map(math.isfinite, c.covariance.flat)):
-        raise Complaint(f'{c.file}: expected a "covariance" and the k of the "joint" region; run scancal refine again')
+        raise Complaint(f'{c.file}: expected a "covariance" and the k of the "joint" region; '
+                        "run scancal refine again")
 
 
 def _is_number(value: object) -> bool:
@@ -74,20 +77,24 @@ def _is_number(value: object) -> bool:
 
 
 def _content(c: Calibration, t: Language, given: dict) -> dict[str, object]:
+    """For templates/certificate.xml."""
     units = [parameter["unit"] for parameter in c.estimated]
-    return {"quantities": [_quantity(parameter, t) for parameter in c.estimated], "columns": _columns(c["covariance"], units),
-            "probability": _factor(c.get("coverage_probability") or 0.95), "joint_k": _factor(c["joint"]["k"]),
+    return {"version": as_text(c.get("version")) or "–", "procedure": procedure.sentences(c, t),
+            "quantities": [_quantity(parameter, t) for parameter in c.estimated],
+            "columns": _columns(c["covariance"], units), "joint_k": _factor(c["joint"]["k"]),
+            "probability": _factor(c.get("coverage_probability") or 0.95),
             "budget": [_source(line, c) for line in c.get("budget") or []],
-            "version": as_text(c.get("version")) or "–", "trials": (c.get("montecarlo") or {}).get("trials"), "procedure": procedure.sentences(c, t),
+            "trials": (c.get("montecarlo") or {}).get("trials"),
             "warnings": [t.translated(str(warning)) for warning in c.get("warnings") or []],
             "rest": [(label(path, c["certificate"], t), text) for path, text in given["rest"]]}
 
 
 def _quantity(parameter: dict, t: Language) -> dict[str, object]:
     power, unit = SI[parameter["unit"]]
-    dof = parameter.get("dof")
-    return {"name": parameter["name"], "meaning": meaning(parameter["name"], t), "unit": unit, "k": _factor(parameter["k"]),
-            "dof": number(dof) if _is_number(dof) else None} | {key: number(parameter[key], power) for key in ("value", "u", "U")}
+    dof = number(parameter["dof"]) if _is_number(parameter.get("dof")) else ""
+    numbers = {key: number(parameter[key], power) for key in ("value", "u", "U")}
+    return numbers | {"name": parameter["name"], "meaning": meaning(parameter["name"], t), "unit": unit,
+                      "k": _factor(parameter["k"]), "dof": dof}
 
 
 def _columns(covariance: list[list[float]], units: list[str]) -> list[list[tuple[str, str]]]:
@@ -105,9 +112,11 @@ def _factor(k: float) -> str:
 
 
 def _source(line: dict, c: Calibration) -> dict[str, object]:
-    """A line of the budget: its own u, and what it brings to each parameter. What is not known is left out."""
+    """A line of the budget: its own u, and what it brings to each parameter. The unknown is left out."""
     power, unit = SI[line["unit"]]
-    contributions = [(parameter["name"], number(line["u"][parameter["name"]], SI[parameter["unit"]][0]), SI[parameter["unit"]][1])
-                     for parameter in c.estimated if _is_number((line.get("u") or {}).get(parameter["name"]))]
-    return {"name": line["source"], "type": line["type"], "unit": unit, "contributions": contributions,
-            "u": number(line["value"], power) if _is_number(line.get("value")) else None}
+    brought = [(each["name"], (line.get("u") or {}).get(each["name"]), *SI[each["unit"]])
+               for each in c.estimated]
+    return {"name": line["source"], "type": line["type"], "unit": unit,
+            "u": number(line["value"], power) if _is_number(line.get("value")) else "",
+            "contributions": [(name, number(u, shift), of) for name, u, shift, of in brought
+                              if _is_number(u)]}

@@ -1,5 +1,5 @@
-"""The administrative data of a Digital Calibration Certificate, from `certificate:` of dataset.yaml: all that the schema
-demands has to be there, nothing is made up, and what the schema has no place for becomes a statement."""
+"""The administrative data of a Digital Calibration Certificate, from `certificate:` of dataset.yaml: all that
+the schema demands has to be there, nothing is made up, and what it has no place for becomes a statement."""
 import datetime
 import re
 
@@ -8,12 +8,12 @@ from administration import Path, as_text, leaves
 PLACES = ("laboratory", "customer", "laboratoryBranch", "customerBranch", "other")
 ISSUERS = ("manufacturer", "calibrationLaboratory", "customer", "owner", "other")
 # Our key -> element of dcc:locationType, in the order of the schema.
-LOCATION = {"city": "city", "country": "countryCode", "postcode": "postCode", "post_office_box": "postOfficeBox",
-            "state": "state", "street": "street", "number": "streetNo"}
+LOCATION = {"city": "city", "country": "countryCode", "postcode": "postCode", "state": "state",
+            "post_office_box": "postOfficeBox", "street": "street", "number": "streetNo"}
 
 
 class Administration:
-    """Asks for one field after the other, and remembers what was missing or wrong and what nobody asked for."""
+    """Asks for one field after the other; remembers what was missing or wrong, and what nobody asked for."""
 
     def __init__(self, certificate: object):
         self._root = certificate
@@ -88,38 +88,47 @@ def place(path: Path) -> str:
 def read_administration(a: Administration) -> dict[str, object]:
     """For templates/certificate.xml; worth nothing while there are complaints."""
     found = {
-        "identification": a.text("identification", example="K-2026-0815"), "country": a.code("country", example="DE"),
-        "order": a.text("order"), "received": a.date("received"), "issued": a.date("issued"),
-        "begin": a.date("performed", "begin", example="2026-03-01"), "end": a.date("performed", "end", example="2026-03-02"),
-        "place": a.choice("performed", "place", of=PLACES, example="laboratory"), "item": _thing(a, ("item",), mandatory=True),
-        "laboratory": _contact(a, ("laboratory",)), "code": a.text("laboratory", "code"), "customer": _contact(a, ("customer",)),
-        "persons": [_person(a, path) for path in a.items("persons", example="[{name: A. Berg, signs: yes}]")],
-        "equipment": [_thing(a, path) for path in a.items("equipment")], "statements": _statements(a)}
+        "identification": a.text("identification", example="K-2026-0815"), "order": a.text("order"),
+        "country": a.code("country", example="DE"),
+        "received": a.date("received"), "issued": a.date("issued"),
+        "begin": a.date("performed", "begin", example="2026-03-01"),
+        "end": a.date("performed", "end", example="2026-03-02"),
+        "place": a.choice("performed", "place", of=PLACES, example="laboratory"),
+        "item": _thing(a, ("item",), mandatory=True), "laboratory": _contact(a, ("laboratory",)),
+        "code": a.text("laboratory", "code"), "customer": _contact(a, ("customer",)),
+        "persons": [_person(a, at) for at in a.items("persons", example="[{name: A. Berg, signs: yes}]")],
+        "equipment": [_thing(a, at) for at in a.items("equipment")], "statements": _statements(a)}
     if _is_date(found["begin"]) and _is_date(found["end"]) and found["begin"] > found["end"]:
-        a.complaints.append(f"{place(('performed', 'end'))}: {found['end']} lies before the begin, {found['begin']}")
+        a.complaints.append(f"{place(('performed', 'end'))}: {found['end']} lies before the begin, "
+                            f"{found['begin']}")
     return found | {"rest": a.rest()}
 
 
 def _contact(a: Administration, path: Path) -> dict[str, object]:
-    name = a.text(*path, "name", example="Calibration Ltd")
-    location = {key: a.code(*path, "address", key) if key == "country" else
-                a.text(*path, "address", key, example="Braunschweig" if key == "city" else "") for key in LOCATION}
-    return {"name": name, "location": [(LOCATION[key], text) for key, text in location.items() if text],
-            "further": a.text(*path, "address", "further")} | {key: a.text(*path, key) for key in ("email", "phone", "fax")}
+    found = {"name": a.text(*path, "name", example="Calibration Ltd")}
+    found |= {key: a.text(*path, key) for key in ("email", "phone", "fax")}
+    address = (*path, "address")
+    location = [(element, a.code(*address, key) if key == "country" else
+                 a.text(*address, key, example="Braunschweig" if key == "city" else ""))
+                for key, element in LOCATION.items()]
+    return found | {"location": [(element, text) for element, text in location if text],
+                    "further": a.text(*address, "further")}
 
 
 def _thing(a: Administration, path: Path, mandatory: bool = False) -> dict[str, object]:
     """The item, or a piece of equipment."""
-    found = {key: a.text(*path, key, example="line profiler on a turntable" if key == "name" else "")
-             for key in ("name", "manufacturer", "model", "certificate")}
-    numbers = a.items(*path, "identifications", example="[{issuer: manufacturer, value: 4711}]" if mandatory else "")
-    return found | {"identifications": [{"issuer": a.choice(*at, "issuer", of=ISSUERS, example="manufacturer"),
-                                         "value": a.text(*at, "value", example="4711"), "name": a.text(*at, "name")}
-                                        for at in numbers]}
+    found = {"name": a.text(*path, "name", example="line profiler on a turntable")}
+    found |= {key: a.text(*path, key) for key in ("manufacturer", "model", "certificate")}
+    given = a.items(*path, "identifications",
+                    example="[{issuer: manufacturer, value: 4711}]" if mandatory else "")
+    return found | {"identifications": [
+        {"issuer": a.choice(*at, "issuer", of=ISSUERS, example="manufacturer"),
+         "value": a.text(*at, "value", example="4711"), "name": a.text(*at, "name")} for at in given]}
 
 
 def _person(a: Administration, path: Path) -> dict[str, object]:
-    return {"name": a.text(*path, "name", example="A. Berg"), "role": a.text(*path, "role"), "signs": a.yes(*path, "signs")}
+    return {"name": a.text(*path, "name", example="A. Berg"), "role": a.text(*path, "role"),
+            "signs": a.yes(*path, "signs")}
 
 
 def _statements(a: Administration) -> list[str]:

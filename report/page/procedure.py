@@ -11,7 +11,7 @@ def sentences(c: Calibration, t: Language) -> list[str]:
     told += [_fitted(c, t), t(f"procedure.method.{c['model']}")]
     trials = (c.get("montecarlo") or {}).get("trials")
     if trials:
-        told.append(t("procedure.monte_carlo", trials=t.number(count(trials))))
+        told.append(t("procedure.monte_carlo", trials=count(trials)))
     return told
 
 
@@ -25,7 +25,7 @@ def _seen(c: Calibration, t: Language) -> str:
     key = "one" if len(targets) == 1 else "few" if len(targets) <= FEW_NAMES else "many"
     numbers = {"views": _views(c)} | {what: sum(target.get(what) or 0 for target in targets)
                                       for what in ("points", "missing", "set_aside")}
-    counted = [t(f"{words}.{what}", count=t.number(count(number))) for what, number in numbers.items() if number]
+    counted = [t(f"{words}.{what}", count=count(number)) for what, number in numbers.items() if number]
     return t(f"{words}.seen", targets=t(f"{words}.targets_{key}", count=len(targets), names=names),
              counted=", ".join(counted))
 
@@ -40,10 +40,10 @@ def _views(c: Calibration) -> float:
 
 def _fitted(c: Calibration, t: Language) -> str:
     names = [parameter["name"] for parameter in c.estimated]
-    weights = "equal" if has_equal_weights(c) else "estimated"
-    return t(f"procedure.{c['model']}.fitted",
-             names=", ".join(names) if len(names) <= FEW_NAMES else t("procedure.many_names", count=len(names)),
-             residual=t.translated(str(c.get("residual") or "–"))[0], weights=t(f"procedure.weights_{weights}"),
+    many = t("procedure.many_names", count=len(names))
+    weights = t("procedure.weights_equal" if has_equal_weights(c) else "procedure.weights_estimated")
+    return t(f"procedure.{c['model']}.fitted", names=", ".join(names) if len(names) <= FEW_NAMES else many,
+             residual=t.translated(str(c.get("residual") or "–"))[0], weights=weights,
              iterations=c.get("iterations") or "–", start=_start(c, t))
 
 
@@ -52,6 +52,7 @@ def _start(c: Calibration, t: Language) -> str:
     if not grid.get("nodes"):
         return ""
     intervals = [t("procedure.interval", name=name, lower=t.number(f"{search[name].min():g}"),
-                   upper=t.number(f"{search[name].max():g}")) for name in ("M", "N") if name in search and len(search)]
+                   upper=t.number(f"{search[name].max():g}"))
+                 for name in ("M", "N") if name in search and len(search)]
     return t("procedure.start_over" if intervals else "procedure.start", intervals=", ".join(intervals),
              step=t.number(f"{grid.get('step') or 0:g}"), nodes=count(grid["nodes"]))

@@ -20,5 +20,6 @@ def _identification(c: Calibration, t: Language) -> list[tuple[str, str]]:
         return as_text(found)
     begin, end = given("performed", "begin"), given("performed", "end")
     period = begin or end if begin == end or not (begin and end) else t("head.period", begin=begin, end=end)
-    return [("item", given("item", "name")), ("identification", given("identification")), ("performed", period),
-            ("laboratory", given("laboratory", "name")), ("customer", given("customer", "name"))]
+    return [("item", given("item", "name")), ("identification", given("identification")),
+            ("performed", period), ("laboratory", given("laboratory", "name")),
+            ("customer", given("customer", "name"))]

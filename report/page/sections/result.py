@@ -12,7 +12,7 @@ def content(c: Calibration, previous: Calibration | None, t: Language) -> dict[s
     own = [parameter for parameter in c.estimated if parameter not in c.link_errors] or c.estimated
     return {"shown": [(parameter, meaning(parameter["name"], t)) for parameter in own],
             "elsewhere": len(c.estimated) - len(own),
-            "others": [name for name in OTHERS if any(parameter.get(f"u_{name}") is not None for parameter in own)],
+            "others": [name for name in OTHERS if any(each.get(f"u_{name}") is not None for each in own)],
             "changes": as_found.changes(previous, c) if previous else None,
             "doubts": [_in_words(doubt, t) for doubt in as_found.doubts(previous, c)] if previous else []}
 

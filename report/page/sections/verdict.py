@@ -18,13 +18,13 @@ def content(c: Calibration, previous: Calibration | None, t: Language) -> dict[s
 def _fit(c: Calibration, t: Language) -> str:
     """Lack of fit in words."""
     told, test = [], c.get("lack_of_fit") or {}
-    if test.get("F") is not None:
+    if None not in (test.get("F"), test.get("p")):
         key = "agrees" if test["p"] >= SIGNIFICANT else "unexplained" if has_equal_weights(c) else "explained"
-        told.append(t(f"verdict.fit.{key}", F=t.number(significant(test["F"], 3)), dof1=dof(test["dof1"]),
-                      dof2=dof(test["dof2"]), p=t.number(p_value(test["p"]))))
-    misfits = [misfit for misfit in c.get("misfits") or [] if misfit.get("p") is not None and misfit.get("F") is not None]
+        told.append(t(f"verdict.fit.{key}", F=t.number(significant(test["F"], 3)), dof1=dof(test.get("dof1")),
+                      dof2=dof(test.get("dof2")), p=t.number(p_value(test["p"]))))
+    misfits = [each for each in c.get("misfits") or [] if None not in (each.get("p"), each.get("F"))]
     strongest = min(misfits, key=lambda misfit: (misfit["p"], -misfit["F"]), default=None)
     if strongest and strongest["p"] >= SIGNIFICANT:  # else a warning says so
-        told.append(t("verdict.fit.strongest", source=strongest["source"], F=t.number(significant(strongest["F"], 3)),
-                      p=t.number(p_value(strongest["p"]))))
+        told.append(t("verdict.fit.strongest", source=strongest["source"],
+                      F=t.number(significant(strongest["F"], 3)), p=t.number(p_value(strongest["p"]))))
     return " ".join(told)
