@@ -1,7 +1,8 @@
 """As found and as left: this calibration beside an earlier one of the same instrument.
 
 E_n = (x_left - x_found) / sqrt(U_left^2 + U_found^2) (ISO 13528): at most 1 in size where the two agree
-within their expanded uncertainties. It holds for independent results only; what speaks against that is told with it.
+within their expanded uncertainties. It holds for independent results only; what speaks against that is told
+with it.
 """
 import math
 from dataclasses import dataclass

@@ -14,7 +14,7 @@ from language import LANGUAGES, PLACE, TEXTS, Language
 
 PAGE = paths.SOURCE / "report" / "page"
 # Signs, symbols and names that are the same in every language.
-SIGNS = {"u", "U", "k", "F", "p", "rms", "%", "SHA-256", "scancal", "scancal refine", "±"}
+SIGNS = {"u", "U", "k", "F", "p", "rms", "%", "SHA-256", "scancal", "scancal refine", "±", "x", "y", "z"}
 
 
 def texts(code: str) -> dict[str, str]:
