@@ -4,6 +4,9 @@ import math
 from calibration import Calibration
 
 Cell = dict  # "column", "value", "u"
+# Columns of a robot that hold more than one length or location.
+SUMMARIES = ["max/mm", "mean/mm", "rms of balls/mm", "calibrated with/mm", "held out/mm", "worst spacing/mm",
+             "worst, held out/mm"]
 
 
 def methods(c: Calibration) -> list[dict]:

@@ -61,9 +61,11 @@ class Histogram:
 
     def quantiles(self) -> tuple[np.ndarray, np.ndarray]:
         """At every edge of a bin with residuals on both sides: the quantile of the normal distribution below which it
-        would have as large a share, and the edge itself."""
-        share = (self.below + np.concatenate([[0], np.cumsum(self.counts)])) / self.total
-        inside = (share > 0) & (share < 1)
+        would have as large a share, and the edge itself. Of the edges of an empty bin only that towards the middle."""
+        all_counts = np.concatenate([[self.below], self.counts, [self.above]])
+        share = np.cumsum(all_counts)[:-1] / self.total
+        outer = np.where(share < 0.5, all_counts[:-1], all_counts[1:])
+        inside = (share > 0) & (share < 1) & (outer > 0)
         return np.array([NormalDist().inv_cdf(p) for p in share[inside]]), self.edges[inside]
 
 

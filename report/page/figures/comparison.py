@@ -5,12 +5,11 @@ import numpy as np
 
 import style
 from calibration import Calibration
-from comparison import columns, method_name, methods, u, value
+from comparison import SUMMARIES, columns, method_name, methods, u, value
 from notation import length_unit, shortened
 
 FAR = 30  # times the reference's U: from here on the axis is logarithmic beyond it
-SUMMARIES = {"max/mm": "D", "mean/mm": "|", "rms of balls/mm": "x", "calibrated with/mm": "|", "held out/mm": "x",
-             "worst spacing/mm": "D", "worst, held out/mm": "s"}
+MARKERS = dict(zip(SUMMARIES, "D|x|xDs"))
 
 
 def draw(c: Calibration, t) -> style.Figure | None:
@@ -90,14 +89,14 @@ def _round_up(number: float) -> float:
 
 def _errors(rows: list[dict], t) -> style.Figure | None:
     lengths = [column for column in columns(rows) if column not in SUMMARIES]
-    summaries = [column for column in columns(rows) if column in SUMMARIES]
+    summaries = [column for column in SUMMARIES if column in columns(rows)]
     figure, axes = style.new_figure(1.1 + 0.34 * len(rows))
     places = np.arange(len(rows))
     for k, column in enumerate(lengths):
         axes.plot(_sizes(rows, column), places, "o", color=style.TERTIARY, markersize=5, markeredgecolor=style.PRIMARY,
                   markeredgewidth=0.5, label=t("figure.comparison.single") if k == 0 else None)
     for column, color in zip(summaries, (style.INK, style.SECONDARY, style.PRIMARY, style.MUTED)):
-        axes.plot(_sizes(rows, column), places, linestyle="none", marker=SUMMARIES[column], color=color, markersize=8,
+        axes.plot(_sizes(rows, column), places, linestyle="none", marker=MARKERS[column], color=color, markersize=8,
                   markeredgewidth=1.8, markerfacecolor="none",
                   label=t.named("comparison.column", column).split(" / ")[0])
     axes.set_xscale("log")
@@ -116,6 +115,6 @@ def _sizes(rows: list[dict], column: str) -> np.ndarray:
 
 
 def _method_names(axes, rows: list[dict], t) -> None:
-    axes.set_yticks(range(len(rows)), [shortened(method_name(row, t), 34) for row in rows])
+    axes.set_yticks(range(len(rows)), [shortened(method_name(row, t), 38) for row in rows])
     axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.tick_params(axis="y", left=False)

@@ -49,7 +49,7 @@ def _quantiles(axes, histogram: Histogram, t) -> None:
     ends = np.array([min(-4, normal.min(), found.min()), max(4, normal.max(), found.max())]) \
         if normal.size else np.array([-4, 4])
     x = np.linspace(*ends, 201)
-    axes.fill_between(x, *_band(x, histogram.total), color=style.FAINT, linewidth=0,
+    axes.fill_between(x, *_band(x, histogram.total), color=style.TERTIARY, linewidth=0,
                       label=t("figure.residual_histogram.band"))
     axes.plot(ends, ends, color=style.INK, linewidth=0.9, linestyle="-")
     axes.plot(normal, found, linestyle="none", marker="o", markersize=3, color=style.PRIMARY)

@@ -22,7 +22,7 @@ def draw(c: Calibration, t) -> style.Figure | None:
     factor, unit = length_unit(limit)
     columns = min(COLUMNS, len(targets))
     rows = math.ceil(len(targets) / columns)
-    figure, grid = style.new_figure(0.4 + 1.75 * rows, rows, columns, squeeze=False)
+    figure, grid = style.new_figure(0.4 + (1.75 if rows < 3 else 1.45) * rows, rows, columns, squeeze=False)
     many = sum(map(len, tables)) > MOST_VECTORS
     for axes, target, table in zip(grid.flat, targets, tables):
         cells = PolyCollection(_rectangles(table), array=np.ma.masked_invalid(factor * table["residual"]),

@@ -19,7 +19,7 @@ def draw(c: Calibration, t) -> style.Figure | None:
     correlated = with_table(worst(scanned_targets(c), MOST_LINES), "sweep_correlation")
     columns = min(COLUMNS, len(targets))
     rows = math.ceil(len(targets) / columns)
-    heights = [1.5 * rows + 0.3] + ([2.2] if correlated else [])
+    heights = [(1.5 if rows < 3 else 1.25) * rows + 0.3] + ([2.2] if correlated else [])
     figure = style.pyplot.figure(figsize=(style.WIDTH, sum(heights)))
     parts = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
     _sweeps(parts[0], parts[0].subplots(rows, columns, squeeze=False, sharey=True), targets, t)

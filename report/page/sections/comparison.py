@@ -1,7 +1,7 @@
 """Tables of the methods: as many columns in each as a page is wide."""
 import math
 
-from comparison import cell, columns, method_name, methods
+from comparison import SUMMARIES, cell, columns, method_name, methods
 from notation import concise, count, significant
 
 WIDTH = 66  # characters beside the names of the methods
@@ -28,9 +28,9 @@ def _says_nothing(column: str, rows: list[dict]) -> bool:
 
 
 def _parts(shown: list[str], rows: list[dict], t) -> list[list[str]]:
-    values = [column for column in VALUES if column in shown]
+    first = [column for column in [*VALUES, *SUMMARIES] if column in shown]
     parts = []
-    for group in (values, [column for column in shown if column not in values]):
+    for group in (first, [column for column in shown if column not in first]):
         left = 0
         for column in group:
             width = 2 + max([len(word) for word in t.named("comparison.column", column).split()]
