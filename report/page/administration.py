@@ -2,7 +2,8 @@
 
 # In this order on the page, with words of [certificate.key]; other keys follow under their own name.
 KNOWN = ["identification", "order", "performed", "begin", "end", "place", "received", "issued", "item",
-         "name", "role", "signs", "manufacturer", "model", "identifications", "issuer", "value", "laboratory", "code",
+         "name", "role", "signs", "manufacturer", "model", "identifications", "issuer", "value", "laboratory",
+         "code",
          "customer", "address", "street", "number", "post_office_box", "postcode", "city", "state", "country",
          "further", "email", "phone", "fax", "persons", "equipment", "certificate", "procedure", "conditions",
          "statements"]

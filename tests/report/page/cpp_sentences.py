@@ -1,5 +1,6 @@
-"""The English that the C++ can put into warnings, reasons and the words of calibration.json: its string literals, found
-in the sources where they are pushed, with those of the local names and functions of the same file that they are made of."""
+"""The English that the C++ can put into warnings, reasons and the words of calibration.json: its string literals,
+found in the sources where they are pushed, with those of the local names and functions of the same file that they
+are made of."""
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +25,8 @@ def written(rooms: list[Path]) -> list[Written]:
         source = COMMENT.sub(lambda match: match[1] or "", file.read_text(encoding="utf-8"))
         for match in [*PUSH.finditer(source), *ASSIGNED.finditer(source)]:
             statement = _statement(source, match.end() - 1)
-            pieces = _pieces(statement) + [piece for name in _names(statement) for piece in _pieces(_made_of(name, source))]
+            pieces = _pieces(statement) + [piece for name in _names(statement)
+                                           for piece in _pieces(_made_of(name, source))]
             if pieces:
                 line = source.count("\n", 0, match.start()) + 1
                 found.append(Written(f"{file.relative_to(file.parents[1])}:{line}", tuple(pieces)))
@@ -43,9 +45,10 @@ def _statement(source: str, start: int) -> str:
 
 
 def _pieces(code: str) -> list[str]:
-    """Constant pieces of its sentences: neighbouring literals are one; places, keys and mere punctuation go."""
+    """Constant pieces of its sentences: neighbouring literals are one; places, keys and punctuation go."""
     joined = re.sub(r'\["\w+"\]', "", re.sub(r'"\s*\n?\s*"', "", code))
-    texts = [piece.strip() for literal in LITERAL.findall(joined) for piece in PLACE.split(literal.replace('\\"', '"'))]
+    texts = [piece.strip() for literal in LITERAL.findall(joined)
+             for piece in PLACE.split(literal.replace('\\"', '"'))]
     return [text for text in texts if re.search(r"[A-Za-z]{2,}", text)]
 
 

@@ -14,7 +14,8 @@ CERTIFICATE = {
     "item": {"name": "Liniensensor <am> Drehtisch", "manufacturer": "Müller & Söhne", "model": "LP 200",
              "identifications": [{"issuer": "manufacturer", "value": "007", "name": "serial number"}]},
     "laboratory": {"name": "Beispiel-Labor", "code": "D-K-00000-01-00", "email": "lab@example.org",
-                   "address": {"street": "Hauptstraße", "number": 1, "postcode": "38116", "city": "Braunschweig",
+                   "address": {"street": "Hauptstraße", "number": 1, "postcode": "38116",
+                               "city": "Braunschweig",
                                "country": "DE", "further": "2nd floor"}},
     "customer": {"name": "Kunde AG", "address": {"city": "Wien"}},
     "persons": [{"name": "A. Berg", "role": "head of laboratory", "signs": True}, {"name": "B. Tal"}],
@@ -24,35 +25,46 @@ CERTIFICATE = {
 
 
 def estimated(name: str, value: float, u: float, unit: str = "mm", **more) -> dict:
-    return {"name": name, "unit": unit, "role": "estimate", "value": value, "u": u, "k": 2.04, "U": 2.04 * u, "dof": 31.0,
+    return {"name": name, "unit": unit, "role": "estimate", "value": value, "u": u, "k": 2.04, "U": 2.04 * u,
+            "dof": 31.0,
             "u_naive": u / 2, "u_clustered": u, "u_jackknife": None, "u_bootstrap": u} | more
 
 
 def calibration(**changes) -> Calibration:
     """A turntable with a tilt, so that units are mixed; changes replace keys, None removes one."""
     c = Calibration({
-        "scancal": 1, "model": "turntable", "name": "plate", "residual": "depth", "status": "ok", "unreliable": [],
+        "scancal": 1, "model": "turntable", "name": "plate", "residual": "depth", "status": "ok",
+                     "unreliable": [],
         "warnings": [],
         "parameters": [estimated("M", 123.00214, 0.0054), estimated("N", 408.98765, 0.0131),
                        estimated("tilt_x", -0.00012346, 1.2e-6, "rad"),
                        {"name": "tilt_y", "unit": "rad", "role": "hold", "value": 0.0, "u": 0.0},
                        {"name": "scale_y", "unit": "1", "role": "consider", "value": 0.0, "u": 1e-4}],
-        "covariance": [[2.916e-05, -3.1e-06, 1.7e-09], [-3.1e-06, 1.7161e-04, -2.3e-09], [1.7e-09, -2.3e-09, 1.44e-12]],
-        "correlation": [[1, -0.04, 0.26], [-0.04, 1, -0.15], [0.26, -0.15, 1]], "covariance_of": ["M", "N", "tilt_x"],
+        "covariance": [[2.916e-05, -3.1e-06, 1.7e-09], [-3.1e-06, 1.7161e-04, -2.3e-09],
+                       [1.7e-09, -2.3e-09, 1.44e-12]],
+        "correlation": [[1, -0.04, 0.26], [-0.04, 1, -0.15], [0.26, -0.15, 1]],
+                     "covariance_of": ["M", "N", "tilt_x"],
         "coverage_probability": 0.95, "joint": {"k": 2.93, "dof": 31.0},
         "grid": {"step": 1.0, "S": 0.05, "nodes": 651, "M": 123.0, "N": 409.0},
         "targets": [{"name": "left", "points": 1000, "missing": 5, "set_aside": 3,
                      "set_aside_reasons": {"off the line of their profile": 3}},
                     {"name": "right", "points": 2000, "missing": 0, "set_aside": 0, "set_aside_reasons": {}}],
         "lack_of_fit": {"F": 4.36, "dof1": 189.0, "dof2": 17946.0, "p": 0.0},
-        "misfits": [{"source": "tilt_y", "considered": False, "size": 3e-6, "unit": "rad", "F": 1.2, "dof1": 1.0,
+        "misfits": [{"source": "tilt_y", "considered": False, "size": 3e-6, "unit": "rad", "F": 1.2,
+                     "dof1": 1.0,
                      "dof2": 31.0, "p": 0.28, "moves": {"M": 0.0027, "N": 0.001, "tilt_x": 0.0}}],
-        "budget": [{"source": "noise_y", "type": "A", "value": 0.05, "unit": "mm", "dof": 18000.0, "random": True,
-                    "u": {"M": 0.005, "N": 0.013, "tilt_x": 1.2e-6}, "share": {"M": 0.86, "N": 0.99, "tilt_x": 1.0}},
-                   {"source": "scale_y", "type": "B", "value": 1e-4, "unit": "1", "dof": None, "random": False,
-                    "u": {"M": 0.002, "N": 0.001, "tilt_x": 0.0}, "share": {"M": 0.14, "N": 0.01, "tilt_x": 0.0}}],
-        "data": {"targets": [{"name": "left", "profiles": 40}, {"name": "right", "profiles": 80}]}, "converged": True,
-        "iterations": 7, "inputs": [{"file": "dataset.yaml", "sha256": "d" * 64}, {"file": "left.csv", "sha256": "1" * 64},
+        "budget": [{"source": "noise_y", "type": "A", "value": 0.05, "unit": "mm", "dof": 18000.0,
+                    "random": True,
+                    "u": {"M": 0.005, "N": 0.013, "tilt_x": 1.2e-6},
+                    "share": {"M": 0.86, "N": 0.99, "tilt_x": 1.0}},
+                   {"source": "scale_y", "type": "B", "value": 1e-4, "unit": "1", "dof": None,
+                    "random": False,
+                    "u": {"M": 0.002, "N": 0.001, "tilt_x": 0.0},
+                    "share": {"M": 0.14, "N": 0.01, "tilt_x": 0.0}}],
+        "data": {"targets": [{"name": "left", "profiles": 40}, {"name": "right", "profiles": 80}]},
+                     "converged": True,
+        "iterations": 7, "inputs": [{"file": "dataset.yaml", "sha256": "d" * 64},
+                                    {"file": "left.csv", "sha256": "1" * 64},
                                     {"file": "right.csv", "sha256": "2" * 64}],
         "command": "scancal refine plate", "version": "0.1.0"})
     c.file, c.sha256 = Path("calibration.json"), "c" * 64

@@ -55,7 +55,8 @@ class TextsTest(unittest.TestCase):
     def test_german_is_german(self):
         """Whole phrases that stand in both languages were forgotten."""
         english, german = texts("en"), texts("de")
-        forgotten = [key for key, text in english.items() if german[key] == text and re.search(r"[a-z]{3,} [a-z]{3,} ", text)]
+        forgotten = [key for key, text in english.items() if german[key] == text
+                     and re.search(r"[a-z]{3,} [a-z]{3,} ", text)]
         self.assertEqual(forgotten, [])
 
     def test_a_word_that_is_asked_for_is_there(self):
@@ -64,34 +65,42 @@ class TextsTest(unittest.TestCase):
             source = file.read_text(encoding="utf-8")
             for key in re.findall(r"""\b(?:t|language|self\._language)\(f?["']([^"']*)["']\s*[,)]""", source):
                 pattern = re.compile(re.sub(r"\\\{[^{}]*\\\}", r".+", re.escape(key)))
-                self.assertTrue(any(pattern.fullmatch(each) for each in english), f"{file.relative_to(PAGE)}: {key}")
+                self.assertTrue(any(pattern.fullmatch(each) for each in english),
+                                f"{file.relative_to(PAGE)}: {key}")
 
     def test_no_word_of_the_page_outside_the_texts(self):
         for file in [*(PAGE / "templates").rglob("*.html")]:
-            source = re.sub(r"<style>.*?</style>|<!DOCTYPE html>", "", file.read_text(encoding="utf-8"), flags=re.S)
+            source = re.sub(r"<style>.*?</style>|<!DOCTYPE html>", "", file.read_text(encoding="utf-8"),
+                            flags=re.S)
             bare = re.sub(r"\{\{.*?\}\}|\{%.*?%\}|\{#.*?#\}", "\n", source, flags=re.S)
             for text in re.sub(r"<[^>]*>", "\n", bare).split("\n"):
                 words = html.unescape(text).strip(" \t()[],.:;/=–·")
-                self.assertTrue(words in SIGNS or not re.search(r"[A-Za-zÄÖÜäöüß]", words), f"{file.name}: {words}")
+                self.assertTrue(words in SIGNS or not re.search(r"[A-Za-zÄÖÜäöüß]", words),
+                                f"{file.name}: {words}")
             for attribute in re.findall(r'\b(?:title|alt|aria-label|placeholder)="([^"]*)"', bare):
                 self.assertNotRegex(attribute, "[A-Za-z]", file.name)
 
     def test_no_word_of_the_page_in_its_code(self):
-        """What a section or figure made up by itself would be a phrase: words with blanks between them, but no column
-        of the file with its unit."""
+        """What a section or figure made up by itself would be a phrase: words with blanks between them, but no
+        column of the file with its unit."""
         for folder in ("sections", "figures"):
             for file in (PAGE / folder).glob("*.py"):
                 tree = ast.parse(file.read_text(encoding="utf-8"))
-                strings = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+                strings = [node for node in ast.walk(tree) if isinstance(node, ast.Constant)
+                           and isinstance(node.value, str)]
                 documentation = {id(node.body[0].value) for node in ast.walk(tree)
-                                 if isinstance(node, (ast.Module, ast.FunctionDef, ast.ClassDef)) and node.body
+                                 if isinstance(node, (ast.Module, ast.FunctionDef, ast.ClassDef))
+                                 and node.body
                                  and isinstance(node.body[0], ast.Expr)}
                 phrases = [node.value for node in strings if id(node) not in documentation
                            and re.search(r"[A-Za-z]{3,} [A-Za-z]{2,}[^/]*$", node.value)]
-                known = {"upper left", "upper right", "lower left", "lower right", "center left", "center right",
-                         "lower center", "upper center", "offset points", "axes fraction", "outside upper left",
+                known = {"upper left", "upper right", "lower left", "lower right", "center left",
+                         "center right",
+                         "lower center", "upper center", "offset points", "axes fraction",
+                         "outside upper left",
                          "equal", "data limits"}
-                self.assertEqual([phrase for phrase in phrases if phrase not in known], [], f"{folder}/{file.name}")
+                self.assertEqual([phrase for phrase in phrases if phrase not in known], [],
+                                 f"{folder}/{file.name}")
 
 
 class SentencesTest(unittest.TestCase):
@@ -104,8 +113,10 @@ class SentencesTest(unittest.TestCase):
     def test_the_sources_were_read(self):
         self.assertGreater(len(self.written), 30)
         pieces = {piece for each in self.written for piece in each.pieces}
-        for known in ("there is only one placement of the plate", "is least determined: hold it, give it a prior, or allow "
-                      "more iterations", "the equations are singular", "off the line of their profile", "ball centre"):
+        for known in ("there is only one placement of the plate",
+                      "is least determined: hold it, give it a prior, or allow "
+                      "more iterations", "the equations are singular", "off the line of their profile",
+                      "ball centre"):
             self.assertIn(known, pieces)
 
     def test_a_new_sentence_would_be_found(self):
@@ -133,35 +144,42 @@ class SentencesTest(unittest.TestCase):
         code = "\n".join(file.read_text(encoding="utf-8") for room in ("solver", "models")
                          for file in (paths.SOURCE / room).rglob("*.cc"))
         code = re.sub(r'"\s*\n?\s*"', "", code)
-        clauses = {english: max(re.split(r"[;:,()]", PLACE.sub(";", english)), key=len).strip() for english in self.english}
+        clauses = {english: max(re.split(r"[;:,()]", PLACE.sub(";", english)), key=len).strip()
+                   for english in self.english}
         self.assertEqual([english for english, clause in clauses.items() if clause not in code], [])
 
     def test_both_sides_have_the_same_places(self):
         for each in sentences():
-            self.assertEqual(sorted(set(PLACE.findall(each["english"]))), sorted(set(PLACE.findall(each["here"]))), each["english"])
+            self.assertEqual(sorted(set(PLACE.findall(each["english"]))),
+                             sorted(set(PLACE.findall(each["here"]))), each["english"])
 
     def test_examples(self):
-        for english, expected in {
-            "N: leaving one target out moves it 2.7 times as far as its u explains; the targets disagree, so u is too small, or "
-            "the model lacks something": "N: Wird ein Prüfkörper weggelassen, so ändert sich der Wert 2,7-mal so stark",
-            "lack of fit: tilt_x is held, but the residuals ask for -0.12 rad (F = 200, p < 1e-16), which would move N by 6.2 u "
-            "(also seen as tilt_y, form); estimate it, or declare how uncertain it is, if it is what it looks like":
-                "tilt_x ist festgehalten, die Residuen verlangen jedoch -0,12 rad (F = 200, p < 1e-16); das verschöbe N um das "
-                "6,2-Fache von u (ebenso gedeutet als tilt_y, form)",
-            "lack of fit: form is considered with a smaller u, but the residuals ask for 0.02 mm rms (F = 3.5, p = 1e-05), which "
-            "would move M by 0.4 u; estimate it, or declare how uncertain it is, if it is what it looks like":
-                "form ist mit kleinerer Unsicherheit berücksichtigt, die Residuen verlangen jedoch 0,02 mm rms (F = 3,5, p = 1e-05)",
-            "there is only one placement of the plate; N suffers most (u = 0.12 mm); add a placement with the plate turned about "
-            "the vertical by 20 deg or more against the others": "Es gibt nur eine Aufstellung der Platte; am meisten leidet N",
-            "the refinement did not converge: no convergence after 100 iterations; tilt_x is least determined: hold it, give it a "
-            "prior, or allow more iterations": "keine Konvergenz nach 100 Iterationen; am wenigsten bestimmt ist tilt_x",
-            "the refinement did not converge: Ceres says so.": "Die Ausgleichung konvergierte nicht: Ceres says so.",
-            "left v1.5.csv: 3 of 1200 points on balls were set aside, farther than 4 standard deviations from the sphere":
-                "left v1.5.csv: 3 von 1200 Punkten auf Kugeln",
-        }.items():
-            text, code = self.german.translated(english)
-            self.assertEqual(code, "de", english)
-            self.assertIn(expected, text)
+        ask = ("; estimate it, or declare how uncertain it is, if it is what it looks like",
+               "Schätzen oder die Unsicherheit angeben, wenn es das ist, wonach es aussieht")
+        for english, german in (
+                ("lack of fit: tilt_x is held, but the residuals ask for -0.12 rad (F = 200, p < 1e-16), which "
+                 f"would move N by 6.2 u (also seen as tilt_y, form){ask[0]}",
+                 "Mangelnde Anpassung: tilt_x ist festgehalten, die Residuen verlangen jedoch -0,12 rad (F = 200, "
+                 f"p < 1e-16); das verschöbe N um das 6,2-Fache von u (ebenso gedeutet als tilt_y, form). {ask[1]}"),
+                ("lack of fit: form is considered with a smaller u, but the residuals ask for 0.02 mm rms "
+                 f"(F = 3.5, p = 1e-05), which would move M by 0.4 u{ask[0]}",
+                 "Mangelnde Anpassung: form ist mit kleinerer Unsicherheit berücksichtigt, die Residuen verlangen "
+                 f"jedoch 0,02 mm rms (F = 3,5, p = 1e-05); das verschöbe M um das 0,4-Fache von u. {ask[1]}"),
+                ("there is only one placement of the plate; N suffers most (u = 0.12 mm); add a placement with the "
+                 "plate turned about the vertical by 20 deg or more against the others",
+                 "Es gibt nur eine Aufstellung der Platte; am meisten leidet N (u = 0,12 mm). Eine Aufstellung "
+                 "ergänzen, bei der die Platte gegen die übrigen um 20° oder mehr um die Senkrechte gedreht ist"),
+                ("the refinement did not converge: no convergence after 100 iterations; tilt_x is least "
+                 "determined: hold it, give it a prior, or allow more iterations",
+                 "Die Ausgleichung konvergierte nicht: keine Konvergenz nach 100 Iterationen; am wenigsten bestimmt "
+                 "ist tilt_x: festhalten, Vorwissen angeben oder mehr Iterationen zulassen"),
+                ("the refinement did not converge: Ceres says so.",
+                 "Die Ausgleichung konvergierte nicht: Ceres says so."),
+                ("left v1.5.csv: 3 of 1200 points on balls were set aside, farther than 4.5 standard deviations "
+                 "from the sphere",
+                 "left v1.5.csv: 3 von 1200 Punkten auf Kugeln wurden ausgesondert, weiter als 4,5 "
+                 "Standardabweichungen von der Kugel entfernt")):
+            self.assertEqual(self.german.translated(english), (german, "de"))
 
     def test_a_number_is_no_word(self):
         self.assertEqual(self.german.translated("the sweep of many deg is too narrow")[1], "en")
@@ -172,8 +190,8 @@ class SentencesTest(unittest.TestCase):
 
     def test_names_that_look_like_places_or_groups(self):
         name = r"{~x} \g<0> \1 {0}"
-        text, _ = self.german.translated(f"{name}: its prior and the data disagree: the result lies 3.5 times the prior's u away "
-                                         "from it")
+        text, _ = self.german.translated(f"{name}: its prior and the data disagree: the result lies 3.5 times the "
+                                         "prior's u away from it")
         self.assertTrue(text.startswith(name), text)
 
 

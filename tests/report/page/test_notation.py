@@ -1,4 +1,4 @@
-"""Numbers as GUM 7.2 writes them. The text that the program prints has the same rules: its own tests hold here, too."""
+"""Numbers as GUM 7.2 writes them, with the rules of the text that the program prints: its tests hold here, too."""
 import math
 import random
 import re
@@ -51,7 +51,8 @@ class ConciseTest(unittest.TestCase):
             unit = Decimal(1).scaleb(-len(whole.partition(".")[2]))
             self.assertTrue(10 <= int(digits) <= 99 or (unit == 1 and int(digits) >= 100), (value, u, shown))
             self.assertLessEqual(abs(value_of(whole) - Decimal(value)), unit / 2, (value, u, shown))
-            self.assertLessEqual(abs(int(digits) * unit - Decimal(u)), unit * Decimal("0.500001"), (value, u, shown))
+            self.assertLessEqual(abs(int(digits) * unit - Decimal(u)), unit * Decimal("0.500001"),
+                                 (value, u, shown))
 
     def test_the_example_of_the_gum(self):
         self.assertEqual(notation.concise(100.02147, 0.00035), "100.02147(35)")

@@ -58,7 +58,8 @@ class DoubtsTest(unittest.TestCase):
 
     def test_common_measurements_by_content(self):
         found = earlier()
-        found["inputs"] = [{"file": "old name.csv", "sha256": "2" * 64}, {"file": "dataset.yaml", "sha256": "d" * 64}]
+        found["inputs"] = [{"file": "old name.csv", "sha256": "2" * 64},
+                           {"file": "dataset.yaml", "sha256": "d" * 64}]
         self.assertEqual(as_found.doubts(found, calibration()), [as_found.Doubt("inputs", ("right.csv",))])
 
     def test_common_systematic_influences(self):
@@ -69,7 +70,8 @@ class DoubtsTest(unittest.TestCase):
     def test_other_models_residuals_and_items(self):
         self.assertIn("model", keys(earlier(model="robot-ball"), calibration()))
         self.assertIn("residual", keys(earlier(residual="plane"), calibration()))
-        items = [{"item": {"identifications": [{"issuer": "manufacturer", "value": number}]}} for number in ("7", "8")]
+        items = [{"item": {"identifications": [{"issuer": "manufacturer", "value": number}]}}
+                 for number in ("7", "8")]
         self.assertIn("item", keys(earlier(certificate=items[0]), calibration(certificate=items[1])))
         self.assertEqual(keys(earlier(certificate=items[0]), calibration(certificate=items[0])), [])
         self.assertEqual(keys(earlier(certificate=items[0]), calibration(certificate="none")), [])
