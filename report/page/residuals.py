@@ -11,12 +11,19 @@ MOST_LINES = 6    # targets in one pair of axes: as many as there are colours an
 
 
 def scanned_targets(c: Calibration) -> list[dict]:
-    """c["residuals"]["targets"], of which each also gets the "rms" of its target; none if it has balls."""
+    """c["residuals"]["targets"], of which each also gets the "rms" of its target and how many "profiles" it has; none if
+    it has balls."""
     targets = (c.get("residuals") or {}).get("targets") or []
     if any(target.get("balls") or target.get("poses") for target in targets):
         return []
-    summaries = c.get("targets") or []  # in the same order
-    return [{**target, "rms": summary.get("rms")} for target, summary in zip(targets, summaries)]
+    summaries, read = (_of_each(targets, found) for found in (c.get("targets"), (c.get("data") or {}).get("targets")))
+    return [{**target, "rms": summary.get("rms"), "profiles": of_data.get("profiles")}
+            for target, summary, of_data in zip(targets, summaries, read)]
+
+
+def _of_each(targets: list[dict], found: list[dict] | None) -> list[dict]:
+    """In the same order."""
+    return found if found and len(found) == len(targets) else [{}] * len(targets)
 
 
 def with_table(targets: list[dict], key: str) -> list[dict]:

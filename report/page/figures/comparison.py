@@ -75,16 +75,21 @@ def _offset(axes, offsets: _Offsets, t) -> None:
                           xerr=None if bars is None else factor * bars[chosen],
                           label=t(f"figure.comparison.{label}"), **look, **looks)
     if offsets.are_far:
-        axes.set_xscale("symlog", linthresh=_round_up(U), linscale=0.6)
-        axes.xaxis.set_major_formatter(style.plain_numbers(t))
-        axes.tick_params(axis="x", labelsize=7)
+        _logarithmic(axes, U, factor * offsets.largest, t)
     axes.set_xlabel(t("figure.comparison.apart", name=offsets.name, unit=unit))
     axes.tick_params(axis="y", left=False)
 
 
-def _round_up(number: float) -> float:
-    """To the next power of ten: ticks of a logarithmic axis start there."""
-    return 10.0 ** math.ceil(math.log10(number))
+def _logarithmic(axes, near: float, far: float, t) -> None:
+    """From the power of ten above near on, to both sides; as many ticks as there is room for, a small one a decade."""
+    first, last = math.ceil(math.log10(near)), max(math.ceil(math.log10(near)), math.floor(math.log10(far)))
+    axes.set_xscale("symlog", linthresh=10.0**first)
+    powers = 10.0 ** np.arange(last, first - 1, -max(1, -(-(last - first) // 2)))
+    decades = 10.0 ** np.arange(first, last + 1)
+    axes.set_xticks([*-powers, 0, *powers])
+    axes.set_xticks([*-decades, *decades], minor=True)
+    axes.xaxis.set_major_formatter(style.plain_numbers(t))
+    axes.xaxis.set_minor_formatter("")
 
 
 def _errors(rows: list[dict], t) -> style.Figure | None:

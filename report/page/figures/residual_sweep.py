@@ -63,7 +63,7 @@ def _sweeps(part, grid, targets: list[dict], t) -> None:
 
 
 def _correlations(axes, targets: list[dict], t) -> None:
-    fewest = min(len(Table(target.get("sweep"))) or 1 for target in targets)
+    fewest = min(target["profiles"] or len(Table(target.get("sweep"))) or 1 for target in targets)
     band = white_noise_band(fewest)
     axes.axhspan(-band, band, color=style.FAINT, linewidth=0, label=t("figure.residual_sweep.band"))
     axes.axhline(0, color=style.MUTED, linewidth=0.7, linestyle="-")
