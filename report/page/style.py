@@ -4,11 +4,13 @@ Colours keep their order of lightness, so that they part for colour-blind reader
 meet in a figure they differ in dash or marker, too. Maps are cividis, which was made for both.
 """
 import io
+import logging
 import re
 import warnings
 
 import matplotlib
 
+logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it tells of a cache that it makes, or has no room for
 matplotlib.use("svg")
 from matplotlib import font_manager, pyplot, ticker  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
