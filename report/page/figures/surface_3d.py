@@ -16,7 +16,7 @@ def draw(c: Calibration, t) -> style.Figure | None:
     rows, columns = (max(1, -(-n // MOST_NODES)) for n in surface.S.shape)
     M, N = np.meshgrid(surface.M, surface.N, indexing="ij")
     height = np.log10(factor * surface.S) if surface.is_logarithmic else factor * surface.S
-    figure = style.pyplot.figure(figsize=(style.WIDTH, 4.4))
+    figure = style.pyplot.figure(figsize=(style.WIDTH, 3.7))
     axes = figure.add_subplot(projection="3d", computed_zorder=False)
     drawn = axes.plot_surface(M, N, height, rstride=rows, cstride=columns, cmap=style.MAP, linewidth=0.2,
                               edgecolor=style.INK, antialiased=True, rasterized=True)

@@ -15,7 +15,7 @@ def draw(c: Calibration, t) -> style.Figure | None:
     surfaces = [surface for surface in (searched(c), near(c)) if surface]
     if not surfaces:
         return None
-    figure, grid = style.new_figure(4.3, 1, len(surfaces), squeeze=False)
+    figure, grid = style.new_figure(3.8, 1, len(surfaces), squeeze=False)
     for axes, surface in zip(grid.flat, surfaces):
         _contours(figure, axes, surface, unit_of_S(c), t)
         _points(axes, surface, c, t)
