@@ -65,6 +65,7 @@ def environment_of(calibration: Calibration, previous: Calibration | None, langu
     for rule in (notation.significant, notation.concise, notation.to_last_digit_of, notation.count, notation.dof,
                  notation.percent, notation.p_value):
         environment.filters[rule.__name__] = _in(language, rule)
+    environment.filters["breakable"] = _breakable
     environment.globals |= {"t": language, "c": calibration, "previous": previous,
                             "figure": Figures(calibration, language), "json": json}
     return environment
@@ -75,6 +76,11 @@ def render_section(name: str, environment: jinja2.Environment) -> str:
     known = environment.globals
     content = sections.content(name, known["c"], known["previous"], known["t"])
     return environment.get_template(f"sections/{name}.html").render(content).strip()
+
+
+def _breakable(name: str) -> Markup:
+    """A name of the program that may be broken after each underscore: in the head of a narrow column."""
+    return Markup.escape(name).replace("_", Markup("_<wbr>"))
 
 
 def _in(language: Language, rule):
