@@ -16,7 +16,7 @@ def sentences(c: Calibration, t: Language) -> list[str]:
 
 
 def has_equal_weights(c: Calibration) -> bool:
-    return any(line["source"].startswith("residuals, clustered") for line in c.get("budget") or [])
+    return any(str(line.get("source")).startswith("residuals, clustered") for line in c.get("budget") or [])
 
 
 def _seen(c: Calibration, t: Language) -> str:
