@@ -36,25 +36,6 @@ def worst(found: list[Station], most: int) -> list[Station]:
     return [found[i] for i in sorted(order[:most])]
 
 
-def _station(target: dict) -> Station:
-    poses, balls = Table(target.get("poses")), Table(target.get("balls"))
-    known = _columns(balls, ["pose", "x", "y", "z"])
-    known = known[np.isfinite(known).all(axis=1)]
-    pose_of = known[:, 0].astype(int)
-    sockets = poses["socket"].astype(int) if "socket" in poses else np.zeros(len(poses), int)
-    names = balls.names or [str(socket + 1) for socket in sockets[pose_of]]
-    return Station(target.get("name") or "", poses.names or [str(k + 1) for k in range(len(poses))],
-                   _columns(poses, [name for name in poses.columns if name.startswith("q")]),
-                   _columns(poses, ["x", "y", "z"]), pose_of, names, known[:, 1:])
-
-
-def _columns(table: Table, names: list[str]) -> np.ndarray:
-    """Side by side; no rows where one of them is not in the table."""
-    if not all(name in table for name in names):
-        return np.empty((0, len(names)))
-    return np.stack([table[name] for name in names], axis=1) if names else np.empty((len(table), 0))
-
-
 def joint_angles(c: Calibration) -> np.ndarray:
     """All poses x joints, in degrees; empty where poses of the flange were given."""
     found = [each.joints for each in stations(c)]
@@ -62,3 +43,28 @@ def joint_angles(c: Calibration) -> np.ndarray:
         return np.empty((0, 0))
     joints = np.degrees(np.vstack(found))
     return joints[np.isfinite(joints).all(axis=1)]
+
+
+def _station(target: dict) -> Station:
+    poses, balls = Table(target.get("poses")), Table(target.get("balls"))
+    residuals = _columns(balls, ["pose", "x", "y", "z"])
+    residuals = residuals[np.isfinite(residuals).all(axis=1)]
+    pose_of = residuals[:, 0].astype(int)
+    return Station(target.get("name") or "", poses.names or [str(k + 1) for k in range(len(poses))],
+                   _columns(poses, [name for name in poses.columns if name.startswith("q")]),
+                   _columns(poses, ["x", "y", "z"]), pose_of, _balls(poses, balls), residuals[:, 1:])
+
+
+def _balls(poses: Table, balls: Table) -> list[str]:
+    """Of the residuals that are numbers; of a ball on the flange the socket, which the pose knows."""
+    known = np.flatnonzero(np.isfinite(balls.rows).all(axis=1))
+    if balls.names or "socket" not in poses:
+        return [balls.names[k] if balls.names else "1" for k in known]
+    return [str(int(poses["socket"][int(balls["pose"][k])]) + 1) for k in known]
+
+
+def _columns(table: Table, names: list[str]) -> np.ndarray:
+    """Side by side; no rows where one of them is not in the table."""
+    if not all(name in table for name in names):
+        return np.empty((0, len(names)))
+    return np.stack([table[name] for name in names], axis=1) if names else np.empty((len(table), 0))

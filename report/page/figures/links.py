@@ -73,6 +73,9 @@ def _limits(rows: list[links.LinkError]) -> tuple[float, float]:
 
 
 def _draw(axes, rows: list[links.LinkError], t) -> None:
+    if not rows:
+        axes.set_visible(False)
+        return
     low, high = _limits(rows)
     for k, row in enumerate(rows):
         if row.link % 2 == 0:
