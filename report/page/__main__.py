@@ -6,6 +6,9 @@ from pathlib import Path
 from calibration import Complaint, read_calibration
 from language import LANGUAGES, Language
 
+PACKAGES = {"jinja2": "python3-jinja2", "markupsafe": "python3-markupsafe", "matplotlib": "python3-matplotlib",
+            "numpy": "python3-numpy", "fontTools": "python3-fonttools", "weasyprint": "weasyprint"}
+
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="scancal report")
@@ -39,6 +42,14 @@ def main() -> int:
     except Complaint as complaint:
         print(f"scancal: {complaint}", file=sys.stderr)
         return 1
+    except ModuleNotFoundError as error:
+        if error.name not in PACKAGES:
+            raise
+        print(f"scancal: Python's {error.name} is missing: install {PACKAGES[error.name]}, or run scripts/setup",
+              file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130  # as a shell has it
     return 0
 
 

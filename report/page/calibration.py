@@ -89,7 +89,7 @@ class Calibration(dict):
     @property
     def traceable(self) -> bool:
         """Something systematic was declared (type B): else u is of repeatability and fit only."""
-        return any(line["type"] == "B" and not line.get("random") for line in self.get("budget", []))
+        return any(line.get("type") == "B" and not line.get("random") for line in self.get("budget") or [])
 
 
 def read_calibration(file: Path) -> Calibration:

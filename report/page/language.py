@@ -8,7 +8,7 @@ from markupsafe import Markup
 TEXTS = Path(__file__).parent / "texts"
 LANGUAGES = sorted(folder.name for folder in TEXTS.iterdir())
 
-# In sentences.toml: {name} is taken over, {#number} gets the decimal sign, {~phrase} is a sentence of its own.
+# In sentences.toml: {name} is taken over, {#number} gets the decimal sign, {~phrase} is a sentence by itself.
 PLACE = re.compile(r"\{([#~]?)(\w+)\}")
 _NUMBER = r"[-+]?(?:\d+(?:\.\d+)?(?:e[-+]?\d+)?|inf|nan)"
 
@@ -21,20 +21,16 @@ class Language:
         self._texts: dict = {}
         for file in sorted((TEXTS / code).glob("*.toml")):
             _merge(tomllib.loads(file.read_text(encoding="utf-8")), self._texts)
-        self._sentences = [(pattern_of(each["english"]), each["here"]) for each in self._texts.pop("sentence", [])]
+        sentences = self._texts.pop("sentence", [])
+        self._sentences = [(pattern_of(each["english"]), each["here"]) for each in sentences]
 
     def __call__(self, key: str, **values: object) -> str:
         return self._find(key).format(**values)
 
     def named(self, key: str, word: str) -> str:
-        """A word of calibration.json (a column, a reason) in this language, from the table of that key; one that the
-        table does not know stays as it is. Numbers in it stand in the table as #: "step #" for "step 0.1"."""
-        number = r"\d+(?:\.\d+)?(?:e[+-]?\d+)?"
-        found = self._find_table(key).get(re.sub(number, "#", word))
-        if found is None:
-            return word
-        numbers = iter(re.findall(number, word))
-        return re.sub("#", lambda _: self.number(next(numbers)), found)
+        """A name in calibration.json (of a column, a unit) as readers know it, from the table of that key; one that the
+        table does not know stays as it is."""
+        return self._find_table(key).get(word, word)
 
     def _find_table(self, key: str) -> dict:
         found = self._texts
@@ -47,8 +43,8 @@ class Language:
         return (self._find_table(table) if table else self._texts)[word].strip()
 
     def translated(self, english: str) -> tuple[str, str]:
-        """What the program itself wrote into calibration.json, and the language it is in now: this one where a pattern
-        of sentences.toml knows it, else English."""
+        """What the program itself wrote into calibration.json, and the language it is in now: this one where a
+        pattern of sentences.toml knows it, else English."""
         for pattern, here in self._sentences:
             if found := pattern.fullmatch(english):
                 return PLACE.sub(lambda place: self._filled(place, found[place[2]]), here).strip(), self.code

@@ -50,6 +50,11 @@ def percent(share: float | None) -> str:
     return "–" if share is None else f"{100 * max(0.0, share):.1f}"
 
 
+def p_value(p: float | None) -> str:
+    """= 0.02, with its sign of relation; below 1e-16 it is not known better."""
+    return "= –" if p is None else "< 10⁻¹⁶" if p < 1e-16 else "= " + significant(p, 1)
+
+
 def length_unit(largest_mm: float) -> tuple[float, str]:
     """For an axis of lengths that go up to this one: what to multiply mm with, and the unit."""
     return (1000.0, "µm") if 0 < largest_mm < 0.1 else (1.0, "mm")

@@ -18,7 +18,8 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 # The order of the page. A section whose template renders to nothing (it has no data) takes no number.
 SECTIONS = ["verdict", "result", "links", "budget", "comparison", "residuals", "surface", "correlation",
-            "leave_one_out", "monte_carlo", "scene", "coverage_of_poses", "lengths", "volume", "considered", "inputs"]
+            "leave_one_out", "monte_carlo", "scene", "coverage_of_poses", "lengths", "volume", "considered",
+            "certificate", "inputs"]
 
 
 class Figures:
@@ -45,22 +46,41 @@ class Figures:
 
 def render_page(calibration: Calibration, previous: Calibration | None, language: Language) -> str:
     """The whole HTML page: nothing in it is loaded from elsewhere, and the same input gives the same bytes."""
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True,
-                                     undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    for rule in (notation.significant, notation.concise, notation.to_last_digit_of, notation.count, notation.dof,
-                 notation.percent):
-        environment.filters[rule.__name__] = _in(language, rule)
-    environment.globals |= {"t": language, "c": calibration, "previous": previous,
-                            "figure": Figures(calibration, language), "json": json}
-    rendered = [(name, environment.get_template(f"sections/{name}.html").render(
-                     sections.content(name, calibration, previous, language)).strip())
+    environment = environment_of(calibration, previous, language)
+    rendered = [(name, render_section(name, environment))
                 for name in SECTIONS if (TEMPLATES / "sections" / f"{name}.html").exists()]
     html = environment.get_template("page.html").render(
         sections=[(name, Markup(body)) for name, body in rendered if body],
+        **sections.content("head", calibration, previous, language),
         fonts=Markup(font_faces()), css=Markup((TEMPLATES / "page.css").read_text(encoding="utf-8")))
     if sys.stderr.isatty():
         print("\r\033[K", end="", file=sys.stderr, flush=True)
     return html
+
+
+def environment_of(calibration: Calibration, previous: Calibration | None, language: Language) -> jinja2.Environment:
+    """What every template knows: the calibration as c, an earlier one, words as t, figures, the rules of notation."""
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True,
+                                     undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    for rule in (notation.significant, notation.concise, notation.to_last_digit_of, notation.count, notation.dof,
+                 notation.percent, notation.p_value):
+        environment.filters[rule.__name__] = _in(language, rule)
+    environment.filters["breakable"] = _breakable
+    environment.globals |= {"t": language, "c": calibration, "previous": previous,
+                            "figure": Figures(calibration, language), "json": json}
+    return environment
+
+
+def render_section(name: str, environment: jinja2.Environment) -> str:
+    """Without its heading; empty where it has no data."""
+    known = environment.globals
+    content = sections.content(name, known["c"], known["previous"], known["t"])
+    return environment.get_template(f"sections/{name}.html").render(content).strip()
+
+
+def _breakable(name: str) -> Markup:
+    """A name of the program that may be broken after each underscore: in the head of a narrow column."""
+    return Markup.escape(name).replace("_", Markup("_<wbr>"))
 
 
 def _in(language: Language, rule):

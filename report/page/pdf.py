@@ -23,7 +23,7 @@ h1 { string-set: name content(); }
 
 
 def print_page(html: str, file: Path) -> None:
-    """Raises Complaint where WeasyPrint or a letter is missing. Nothing is loaded: what the page holds is all there is."""
+    """Raises Complaint where WeasyPrint or a letter's font is missing. Nothing is loaded from anywhere."""
     try:
         import weasyprint
     except (ImportError, OSError) as error:  # OSError: one of its libraries

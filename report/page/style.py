@@ -4,11 +4,13 @@ Colours keep their order of lightness, so that they part for colour-blind reader
 meet in a figure they differ in dash or marker, too. Maps are cividis, which was made for both.
 """
 import io
+import logging
 import re
 import warnings
 
 import matplotlib
 
+logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it tells of a cache that it makes, or has no room for
 matplotlib.use("svg")
 from matplotlib import font_manager, pyplot, ticker  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
@@ -66,6 +68,14 @@ def plain_numbers(language) -> ticker.FuncFormatter:
 def new_figure(height: float, rows: int = 1, columns: int = 1, **layout) -> tuple[Figure, object]:
     """A figure as wide as the page, height in inches, and its axes."""
     return pyplot.subplots(rows, columns, figsize=(WIDTH, height), **layout)
+
+
+def legend_above(figure: Figure, axes, columns: int) -> None:
+    """What is labelled in these axes, in a strip of its own over the whole figure."""
+    handles, labels = axes.get_legend_handles_labels()
+    strip = 0.05 + 0.19 * -(-len(labels) // columns)  # inches
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - strip / figure.get_figheight()))
+    figure.legend(handles, labels, loc="upper left", ncols=columns, borderaxespad=0)
 
 
 def to_svg(figure: Figure, name: str, title: str, language) -> str:

@@ -1,28 +1,90 @@
-"""Shares of the variance of each parameter, one bar a parameter."""
+"""Shares of the variance of each parameter: for few parameters one bar a source, largest first; for many a bar each, in
+pieces."""
+import numpy as np
+
 import style
 from calibration import Calibration
-from notation import shortened
+from notation import shortened, significant
+from uncertainty import axis_unit, known, shares, sources_by_share
 
-MOST_BARS = 30
+FEW_PARAMETERS, MOST_BARS = 4, 40
+MOST_SOURCES, MOST_PIECES = 12, 5
+NO_PIECE = 0.005  # a share that could not be seen
+HATCHES = ["", "////", "\\\\\\\\", "----", "xxxx", "||||", "++++"]
 
 
 def draw(c: Calibration, t) -> style.Figure | None:
-    lines, parameters = c.get("budget", []), c.estimated[:MOST_BARS]
-    if not lines or not parameters:
+    if not c.get("budget") or not c.estimated:
         return None
-    figure, axes = style.new_figure(0.75 + 0.3 * len(parameters))
-    left = [0.0] * len(parameters)
-    greys = style.matplotlib.colormaps[style.MAP]
-    for k, line in enumerate(lines):
-        shares = [100 * max(0.0, line["share"][parameter["name"]] or 0.0) for parameter in parameters]
-        axes.barh(range(len(parameters)), shares, 0.62, left, color=greys(0.08 + 0.84 * k / max(1, len(lines) - 1)),
-                  edgecolor="white", label=f"{shortened(line['source'])} ({line['type']})")
-        left = [a + b for a, b in zip(left, shares)]
+    return _by_source(c, t) if len(c.estimated) <= FEW_PARAMETERS else _by_parameter(c, t)
+
+
+def caption(c: Calibration, t) -> dict[str, str]:
+    few = len(c.estimated) <= FEW_PARAMETERS
+    how = t("figure.budget.by_source" if few else "figure.budget.by_parameter")
+    left_out = max(0, len(c.estimated) - MOST_BARS)
+    return {"how": how,
+            "left_out": " " + t("figure.budget.left_out", shown=MOST_BARS, left_out=left_out) if left_out else ""}
+
+
+def table_of_shares(c: Calibration, t, most: int, least: float) -> list[tuple[str, str, list[float]]]:
+    """Source, type and shares of the estimated parameters; the smaller sources as one."""
+    lines = [(t.translated(line["source"])[0], line["type"], shares(line, c)) for line in sources_by_share(c)]
+    keep = [line for line in lines if max(line[2]) >= least][:most]
+    rest = lines[len(keep):]
+    if len(rest) == 1:
+        keep, rest = lines, []
+    if rest:
+        keep.append((t("budget.others", number=len(rest)), "", list(np.sum([line[2] for line in rest], axis=0))))
+    return keep
+
+
+def _by_source(c: Calibration, t) -> style.Figure:
+    lines, parameters = table_of_shares(c, t, MOST_SOURCES, NO_PIECE), c.estimated
+    figure, axes = style.new_figure(0.75 + 0.27 * len(lines), 1, len(parameters), sharey=True, squeeze=False)
+    label_inches = 0.55 if len(parameters) < 4 else 0.45
+    panel_inches = (style.WIDTH - 1.9) / len(parameters)
+    for k, (panel, parameter) in enumerate(zip(axes[0], parameters)):
+        for row, (_, kind, of) in enumerate(lines):
+            declared = kind == "B"
+            panel.barh(row, 100 * of[k], 0.62, color=style.TERTIARY if declared else style.PRIMARY,
+                       edgecolor=style.PRIMARY, hatch="////" if declared else "")
+            panel.annotate(t.number(f"{100 * of[k]:.1f}") + " %", (100 * of[k], row), (4, 0),
+                           textcoords="offset points", va="center", fontsize=8)
+        factor, unit = axis_unit(parameter)
+        panel.set_title(f"u({shortened(parameter['name'])}) = {t.number(significant(factor * known(parameter.get('u'))))} "
+                        f"{unit}")
+        panel.set_xlim(0, 100 / (1 - min(0.6, label_inches / panel_inches)))
+        panel.set_xticks([0, 50, 100])
+        panel.spines["bottom"].set_bounds(0, 100)
+        panel.tick_params(axis="y", length=0)
+    figure.supxlabel(t("figure.budget.share"), fontsize=9)
+    names = [f"{shortened(source)} ({kind})" if kind else source for source, kind, _ in lines]
+    axes[0, 0].set_yticks(range(len(lines)), names)
+    axes[0, 0].invert_yaxis()
+    return figure
+
+
+def _by_parameter(c: Calibration, t) -> style.Figure:
+    parameters = c.estimated[:MOST_BARS]
+    pieces = table_of_shares(c, t, MOST_PIECES, NO_PIECE)
+    figure, axes = style.new_figure(0.75 + 0.2 * len(parameters))
+    left = np.zeros(len(parameters))
+    for k, (source, kind, of) in enumerate(pieces):
+        lightness = k / max(1, len(pieces) - 1)
+        width = 100 * np.array(of[:len(parameters)])
+        axes.barh(range(len(parameters)), width, 0.7, left, hatch=HATCHES[k % len(HATCHES)], linewidth=0.4,
+                  color=style.matplotlib.colormaps[style.MAP](0.1 + 0.85 * lightness),
+                  edgecolor="white" if lightness < 0.5 else style.INK,
+                  label=f"{shortened(source)} ({kind})" if kind else source)
+        left += width
     axes.set_yticks(range(len(parameters)), [shortened(parameter["name"]) for parameter in parameters])
-    axes.invert_yaxis()
+    axes.set_ylim(len(parameters) - 0.5, -0.5)
     axes.set_xlim(0, 100)
     axes.set_xlabel(t("figure.budget.share"))
     axes.spines["left"].set_visible(False)
-    axes.tick_params(left=False)
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3)
+    axes.tick_params(axis="y", length=0)
+    longest = max(len(source) for source, _, _ in pieces)
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=max(1, min(3, int(90 / (longest + 12)))),
+                handleheight=1.4, handlelength=2.6)
     return figure

@@ -1,25 +1,96 @@
-"""Correlation of the estimated parameters: lightness is the size, a number says the sign."""
+"""Correlation of the estimated parameters: the area of a disc is its size; a full one is positive, a ring negative."""
+import math
+
+import numpy as np
+
 import style
 from calibration import Calibration
-from notation import significant
+from notation import shortened, significant
+from uncertainty import strongest_pairs
 
-NUMBERS_UP_TO = 12  # parameters: beyond, the numbers would not be read
+WORDS_UP_TO = 2      # parameters: one number is a sentence
+NUMBERS_UP_TO = 10   # parameters: beyond, the numbers would not be read
+CELL = 0.36          # inches, at most
+BESIDE = 3.7         # inches of a matrix that leaves room for the pairs at its right; else they stand in its empty half
+MOST_PAIRS, ROW = 10, 0.2
+LETTER = 0.068       # inches, at 8 points
+LEVELS = 25          # of area: the eye parts fewer
+TOP = 0.3            # inches, for the title of the pairs
 
 
 def draw(c: Calibration, t) -> style.Figure | None:
-    names, correlation = [parameter["name"] for parameter in c.estimated], c.correlation
-    if len(names) < 2:
+    names = [shortened(parameter["name"], 18) for parameter in c.estimated]
+    if len(names) <= WORDS_UP_TO or not np.isfinite(c.correlation).all():
         return None
-    few = len(names) <= NUMBERS_UP_TO
-    figure, axes = style.new_figure(min(6.2, 1.2 + 0.42 * len(names)) if few else 5.6)
-    drawn = axes.imshow(correlation, vmin=-1, vmax=1, aspect="equal")
-    axes.set_xticks(range(len(names)), names, rotation=90)
-    axes.set_yticks(range(len(names)), names)
+    margin = 0.2 + LETTER * max(len(name) for name in names)
+    size = min(style.WIDTH - margin - 0.1, CELL * len(names))
+    height = size + margin + TOP
+    figure = style.pyplot.figure(figsize=(style.WIDTH, height), layout="none")
+    _matrix(_axes(figure, margin, margin, size, size), names, c.correlation, min(8.0, 60 * size / len(names)), t)
+    pairs = strongest_pairs(c, MOST_PAIRS if size > BESIDE else max(3, int(size / ROW)))
+    tall = ROW * len(pairs)
+    words = 0.1 + LETTER * max(len(_pair(pair)) for pair in pairs)
+    left = margin + (size / 2 if size > BESIDE else size + 0.3) + words
+    _pairs(_axes(figure, left, height - TOP - tall, style.WIDTH - left - 0.55, tall), pairs, t)
+    return figure
+
+
+def _axes(figure, left: float, bottom: float, width: float, height: float):
+    """Inches."""
+    wide, high = figure.get_size_inches()
+    return figure.add_axes([left / wide, bottom / high, width / wide, height / high])
+
+
+def _matrix(axes, names: list[str], correlation: np.ndarray, fontsize: float, t) -> None:
+    n = len(names)
+    cell_points = 72 * axes.get_position().width * style.WIDTH / n
+    row, column = np.tril_indices(n)
+    r = correlation[row, column]
+    level = np.round(LEVELS * np.abs(r)).astype(int)
+    for k in range(1, LEVELS + 1):
+        for of_sign, looks in ((r > 0, {"color": style.PRIMARY, "markeredgewidth": 0}),
+                               (r < 0, {"color": "white", "markeredgecolor": style.SECONDARY, "markeredgewidth": 1})):
+            here = of_sign & (level == k)
+            if here.any():
+                axes.plot(column[here], row[here], "o", linestyle="none", **looks,
+                          markersize=0.9 * cell_points * math.sqrt(k / LEVELS) - (1 if looks["color"] == "white" else 0))
+    for i, j in zip(row, column) if n <= NUMBERS_UP_TO else ():
+        if i != j:
+            axes.text(i, j, t.number(significant(correlation[i, j])), ha="center", va="center", fontsize=8)
+    _grid(axes, n, whole=n <= NUMBERS_UP_TO)
+    axes.set_xlim(-0.5, n - 0.5)
+    axes.set_ylim(n - 0.5, -0.5)
+    axes.set_xticks(range(n), names, rotation=90, fontsize=fontsize)
+    axes.set_yticks(range(n), names, fontsize=fontsize)
     axes.spines[:].set_visible(False)
     axes.tick_params(length=0)
-    for i in range(len(names) if few else 0):
-        for j in range(len(names)):
-            axes.text(j, i, t.number(significant(correlation[i, j], 2)), ha="center", va="center", fontsize=8,
-                      color="white" if correlation[i, j] < 0.25 else style.INK)
-    figure.colorbar(drawn, ax=axes, label=t("figure.correlation.scale"), shrink=0.8)
-    return figure
+
+
+def _grid(axes, n: int, whole: bool) -> None:
+    edges = np.arange(n + 1) - 0.5
+    to = np.full(n + 1, n - 0.5)
+    first = np.full(n + 1, -0.5)
+    ends, starts = (to, first) if whole else (np.minimum(edges + 1, to), np.maximum(edges - 1, first))
+    axes.hlines(edges, first, ends, color=style.FAINT, lw=0.6, zorder=0)
+    axes.vlines(edges, starts, to, color=style.FAINT, lw=0.6, zorder=0)
+
+
+def _pair(pair: tuple[str, str, float]) -> str:
+    return f"{shortened(pair[0], 14)}, {shortened(pair[1], 14)}"
+
+
+def _pairs(axes, pairs: list[tuple[str, str, float]], t) -> None:
+    for row, (_, _, r) in enumerate(pairs):
+        axes.plot([0, r], [row, row], "-", color=style.MUTED, lw=1)
+        axes.plot(r, row, "o", markersize=7, clip_on=False, color=style.PRIMARY if r > 0 else "white",
+                  markeredgecolor=style.PRIMARY if r > 0 else style.SECONDARY)
+        axes.annotate(t.number(significant(r)), (1, row), (32, 0), textcoords="offset points", ha="right", va="center",
+                      fontsize=8, annotation_clip=False)
+    axes.axvline(0, color=style.MUTED, lw=0.7)
+    axes.set_xlim(-1, 1)
+    axes.set_xticks([-1, 0, 1])
+    axes.set_ylim(len(pairs) - 0.4, -0.6)
+    axes.set_yticks(range(len(pairs)), [_pair(pair) for pair in pairs])
+    axes.spines["left"].set_visible(False)
+    axes.tick_params(axis="y", length=0)
+    axes.set_title(t("figure.correlation.strongest"))

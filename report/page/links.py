@@ -1,0 +1,45 @@
+"""Errors of a robot's links, in units that fit them: lengths in mm, angles in mrad."""
+import re
+from dataclasses import dataclass
+
+from calibration import LINK_ERROR, Calibration
+
+UNITS = ["mm", "mrad"]
+
+
+@dataclass(frozen=True)
+class LinkError:
+    """value, U and prior in its unit; nominal in mm or rad, as the file has it."""
+    name: str
+    link: int
+    unit: str
+    kind: str  # of what determines it: data, prior, considered, held
+    value: float
+    u: float
+    U: float  # 0: none is stated; of what was considered 2 u
+    k: float | None
+    nominal: float | None
+    prior: float
+    prior_u: float  # 0: no prior
+
+    @property
+    def prior_U(self) -> float:
+        """With the k of U."""
+        return self.prior_u * (self.k or 2.0)
+
+
+def link_errors(c: Calibration) -> list[LinkError]:
+    """In the order of the file: link by link."""
+    return [_link_error(parameter, c.get("determined") or {}) for parameter in c["parameters"]
+            if LINK_ERROR.fullmatch(parameter["name"])]
+
+
+def _link_error(parameter: dict, determined: dict[str, str]) -> LinkError:
+    name, role, k = parameter["name"], parameter["role"], parameter.get("k")
+    unit, factor = ("mrad", 1000.0) if parameter["unit"] == "rad" else ("mm", 1.0)
+    value, u, U, prior, prior_u = (factor * (parameter.get(key) or 0.0)
+                                   for key in ("value", "u", "U", "prior", "prior_u"))
+    kind = {"estimate": determined.get(name, "data"), "consider": "considered"}.get(role, "held")
+    U = {"estimate": U, "consider": 2 * u}.get(role, 0.0)
+    return LinkError(name, int(re.sub(r"\D", "", name)), unit, kind, value, u, U, k, parameter.get("nominal"),
+                     prior, prior_u)

@@ -1,0 +1,13 @@
+"""Lines of the budget as the tables show them."""
+from calibration import Calibration
+from figures.budget import MOST_PIECES, table_of_shares
+from uncertainty import axis_unit, known
+
+FEW_PARAMETERS = 2  # whose columns stand beside those of the sources
+NO_COLUMN = 0.0005  # a share that would be printed as 0.0 in every row
+
+
+def content(c: Calibration, previous, t) -> dict[str, object]:
+    few = len(c.estimated) <= FEW_PARAMETERS
+    return {"lines": c.get("budget") or [], "few": few, "known": known, "units": [axis_unit(p) for p in c.estimated],
+            "by_parameter": [] if few else table_of_shares(c, t, MOST_PIECES, NO_COLUMN)}

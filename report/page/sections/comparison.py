@@ -1,0 +1,62 @@
+"""Tables of the methods: as many columns in each as a page is wide."""
+import math
+
+from comparison import SUMMARIES, cell, columns, method_name, methods
+from notation import concise, count, significant
+
+WIDTH = 66  # characters beside the names of the methods
+VALUES = ["M/mm", "N/mm", "ΔM/u", "ΔN/u", "tilt_x/mrad", "tilt_y/mrad"]  # of a turntable: in one table, in this order
+WHOLE = ["nodes, iter."]
+ROUGH = ["ΔM/u", "ΔN/u"]  # two digits are enough, as for single lengths
+
+
+def content(c, previous, t) -> dict[str, object]:
+    rows = methods(c)
+    shown = [column for column in columns(rows) if not _says_nothing(column, rows)]
+    notes = list(dict.fromkeys(row["note"] for row in rows if row.get("note")))
+    tables = [_table(part, k == 0, rows, notes, t) for k, part in enumerate(_parts(shown, rows, t))]
+    return {"tables": tables, "notes": [t.sentence(note) for note in notes], "about": t(f"comparison.about.{c['model']}")}
+
+
+def _says_nothing(column: str, rows: list[dict]) -> bool:
+    """Empty, or the u that a value already has behind it, or a tilt that is zero throughout."""
+    values = [cell(row, column).get("value") for row in rows]
+    if column.startswith("u("):
+        return any(cell(row, other).get("u") for row in rows for other in columns(rows)
+                   if other.startswith(column[2:column.index(")")] + "/"))
+    return not any(value is not None for value in values) or column.startswith("tilt_") and not any(values)
+
+
+def _parts(shown: list[str], rows: list[dict], t) -> list[list[str]]:
+    first = [column for column in [*VALUES, *SUMMARIES] if column in shown]
+    parts = []
+    for group in (first, [column for column in shown if column not in first]):
+        left = 0
+        for column in group:
+            width = 2 + max([len(word) for word in t.named("comparison.column", column).split()]
+                            + [len(_text(row, column, rows, t)) for row in rows])
+            if width > left:
+                parts.append([])
+                left = WIDTH
+            parts[-1].append(column)
+            left -= width
+    return parts
+
+
+def _table(part: list[str], first: bool, rows: list[dict], notes: list[str], t) -> dict:
+    rows = [row for row in rows if first or row.get("cells")]  # what was left out is said once
+    return {"columns": [t.named("comparison.column", column) for column in part],
+            "rows": [{"method": method_name(row, t), "note": notes.index(row["note"]) + 1 if row.get("note") else 0,
+                      "cells": [_text(row, column, rows, t) for column in part]} for row in rows]}
+
+
+def _text(row: dict, column: str, rows: list[dict], t) -> str:
+    value, u = cell(row, column).get("value"), cell(row, column).get("u")
+    if value is None or not math.isfinite(value):
+        return "–"
+    if column in WHOLE:
+        return count(value)
+    if u:
+        return t.number(concise(value, u))
+    of_precise = any(cell(other, column).get("u") for other in rows)
+    return t.number(significant(value, 6 if of_precise else 2 if column.isdecimal() or column in ROUGH else 3))

@@ -1,0 +1,128 @@
+"""As found and as left: E_n, and what makes the comparison doubtful."""
+import tomllib
+import unittest
+
+from synthetic import calibration, estimated, text_of
+import as_found
+from language import TEXTS
+
+
+def keys(found, left) -> list[str]:
+    return [doubt.key for doubt in as_found.doubts(found, left)]
+
+
+def earlier(**changes):
+    """Of the same instrument, from measurements of its own, with its own plate."""
+    c = calibration(inputs=[{"file": "left.csv", "sha256": "3" * 64}], name="plate, last year", **changes)
+    c["budget"] = c["budget"][:1]
+    c.sha256 = "e" * 64
+    return c
+
+
+def with_parameter(c, k: int, **changes):
+    c["parameters"][k] = c["parameters"][k] | changes
+    return c
+
+
+class ChangesTest(unittest.TestCase):
+    def test_e_n(self):
+        found = with_parameter(earlier(), 0, value=123.0, U=0.03)
+        left = with_parameter(calibration(), 0, value=123.1, U=0.04)
+        change = as_found.changes(found, left)[0]
+        self.assertAlmostEqual(change.change, 0.1, 12)
+        self.assertAlmostEqual(change.e_n, 0.1 / 0.05, 12)  # 3-4-5
+
+    def test_its_sign_is_that_of_the_change(self):
+        found = with_parameter(earlier(), 0, value=124.0)
+        self.assertLess(as_found.changes(found, calibration())[0].e_n, 0)
+        self.assertGreater(as_found.changes(calibration(), found)[0].e_n, 0)
+
+    def test_each_parameter_that_both_have_estimated(self):
+        found = earlier(parameters=[estimated("N", 409.0, 0.01), estimated("shear", 0.0, 1e-4, "rad")])
+        self.assertEqual([change.left["name"] for change in as_found.changes(found, calibration())], ["N"])
+
+    def test_without_an_uncertainty_no_e_n(self):
+        found = with_parameter(earlier(), 0, U=None)
+        change = as_found.changes(found, calibration())[0]
+        self.assertIsNone(change.e_n)
+        self.assertIsNotNone(change.change)
+        self.assertIsNone(as_found.changes(with_parameter(earlier(), 0, value=None), calibration())[0].change)
+
+
+class DoubtsTest(unittest.TestCase):
+    def test_none_about_two_good_ones(self):
+        self.assertEqual(keys(earlier(), calibration()), [])
+
+    def test_the_same_file(self):
+        self.assertIn("same_file", keys(calibration(), calibration()))
+
+    def test_common_measurements_by_content(self):
+        found = earlier()
+        found["inputs"] = [{"file": "old name.csv", "sha256": "2" * 64},
+                           {"file": "dataset.yaml", "sha256": "d" * 64}]
+        self.assertEqual(as_found.doubts(found, calibration()), [as_found.Doubt("inputs", ("right.csv",))])
+
+    def test_common_systematic_influences(self):
+        found = earlier()
+        found["budget"] = calibration()["budget"]
+        self.assertEqual(as_found.doubts(found, calibration()), [as_found.Doubt("influences", ("scale_y",))])
+
+    def test_other_models_residuals_and_items(self):
+        self.assertIn("model", keys(earlier(model="robot-ball"), calibration()))
+        self.assertIn("residual", keys(earlier(residual="plane"), calibration()))
+        items = [{"item": {"identifications": [{"issuer": "manufacturer", "value": number}]}}
+                 for number in ("7", "8")]
+        self.assertIn("item", keys(earlier(certificate=items[0]), calibration(certificate=items[1])))
+        self.assertEqual(keys(earlier(certificate=items[0]), calibration(certificate=items[0])), [])
+        self.assertEqual(keys(earlier(certificate=items[0]), calibration(certificate="none")), [])
+
+    def test_unreliable_ones(self):
+        self.assertEqual(keys(earlier(status="unreliable"), calibration()), ["found_unreliable"])
+        self.assertEqual(keys(earlier(), calibration(status="unreliable")), ["left_unreliable"])
+
+    def test_other_roles_values_and_parameters(self):
+        held = with_parameter(earlier(), 2, role="hold", value=0.0)
+        self.assertEqual(as_found.doubts(held, calibration()), [as_found.Doubt("roles", ("tilt_x",))])
+        elsewhere = with_parameter(earlier(), 3, value=0.001)
+        self.assertEqual(as_found.doubts(elsewhere, calibration()), [as_found.Doubt("roles", ("tilt_y",))])
+        fewer = earlier(parameters=calibration()["parameters"][:4])
+        self.assertEqual(as_found.doubts(fewer, calibration()), [as_found.Doubt("missing", ("scale_y",))])
+        other = with_parameter(earlier(), 0, nominal=120.0)
+        self.assertEqual(as_found.doubts(other, calibration()), [as_found.Doubt("nominal", ("M",))])
+
+
+class WordsTest(unittest.TestCase):
+    def test_both_values_change_and_meaning(self):
+        found = with_parameter(earlier(), 0, value=122.9, u=0.0054)
+        shown = text_of("result", calibration(), found)
+        self.assertIn("As found: plate, last year", shown)
+        self.assertIn("M / mm 122.900 ± 0.011 123.002 ± 0.011 0.1021 6.6 changed", shown)
+        self.assertIn("N / mm 408.988 ± 0.027 408.988 ± 0.027 0.000 0.0 no change shown", shown)
+
+    def test_every_doubt_has_words_in_every_language(self):
+        found = earlier(model="flange-ball", residual="plane", status="unreliable",
+                        certificate={"item": {"identifications": [{"value": 1}]}})
+        found["parameters"] = [estimated("M", 1.0, 0.1, nominal=5.0), *calibration()["parameters"][3:]]
+        found["parameters"][1] = found["parameters"][1] | {"value": 7.0}
+        found["inputs"], found["budget"] = calibration()["inputs"], calibration()["budget"]
+        left = calibration(status="unreliable", certificate={"item": {"identifications": [{"value": 2}]}})
+        found.sha256 = left.sha256
+        words = tomllib.loads((TEXTS / "en" / "result.toml").read_text(encoding="utf-8"))["as_found"]["doubt"]
+        self.assertEqual(keys(found, left), list(words))
+        for language, about in (("en", "is doubtful"), ("de", "zweifelhaft")):
+            shown = text_of("result", left, found, language)
+            self.assertIn(about, shown)
+            self.assertIn("turntable", shown)
+
+    def test_many_names_are_cut(self):
+        found = earlier()
+        found["inputs"] = [{"file": f"{k}.csv", "sha256": f"{k:064}"} for k in range(20)]
+        self.assertIn("7.csv and 12 more", text_of("result", calibration(inputs=found["inputs"]), found))
+
+    def test_nothing_in_common(self):
+        shown = text_of("result", calibration(), earlier(parameters=[estimated("ball_x", 1.0, 0.1)]))
+        self.assertIn("no estimated parameter in common", shown)
+
+
+if __name__ == "__main__":
+    unittest.main()
