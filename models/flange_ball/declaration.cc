@@ -1,49 +1,13 @@
 #include "models/flange_ball/declaration.h"
 #include <set>
+#include <span>
 #include "io/message.h"
 #include "models/parts/declared_links.h"
+#include "models/parts/declared_parameter.h"
 #include "models/parts/joint_columns.h"
 
 namespace scancal {
 namespace {
-
-double InsideUnit(Unit unit, const Units& units) {
-  return units.Of(unit == Unit::kMm ? Dimension::kLength : Dimension::kAngle);
-}
-
-Error InFile(const Dataset& dataset, const std::string& sentence) { return {dataset.file.string() + ": " + sentence}; }
-
-std::vector<std::string> ParameterNames(const FlangeBall& model) {
-  std::vector<std::string> names = {"links"};
-  for (const Quantity& quantity : model.quantities())
-    if (quantity.scope == Scope::kSystem) names.push_back(quantity.name);
-  return names;
-}
-
-void SetLinks(const LinkSetting& setting, FlangeBall* model) {
-  for (int k = FlangeBall::kLinks; k < model->FirstOfJoints(); ++k) {
-    Quantity& quantity = model->quantity(k);
-    if (setting.hold) quantity.role = Role::kHold;
-    if (quantity.role == Role::kEstimate) quantity.u = quantity.unit == Unit::kMm ? setting.u_length : setting.u_angle;
-  }
-}
-
-Result<void> SetParameter(const ParameterSetting& setting, const Dataset& dataset, FlangeBall* model) {
-  const std::string place = "parameters: " + setting.name + ": ";
-  const int index = Find(model->quantities(), setting.name);
-  if (index < 0 || model->quantities()[index].scope != Scope::kSystem)
-    return InFile(dataset, place + "unknown parameter" + Suggestion(setting.name, ParameterNames(*model)));
-  Quantity& quantity = model->quantity(index);
-  const double unit = InsideUnit(quantity.unit, dataset.units);
-  quantity.role = setting.role == "estimate"   ? Role::kEstimate
-                  : setting.role == "consider" ? Role::kConsider
-                                               : Role::kHold;
-  quantity.value = setting.value.value_or(0) * unit;
-  quantity.u = setting.u * unit;
-  if (index < FlangeBall::kSocket && quantity.role != Role::kEstimate && !setting.value)
-    return InFile(dataset, place + setting.role + ": expected its value, for example {" + setting.role + ": 50}");
-  return {};
-}
 
 Result<void> CheckSpacing(const Dataset& dataset, const FlangeBall& model) {
   const Quantity& spacing = model.quantities()[FlangeBall::kSpacing];
@@ -125,10 +89,13 @@ Result<FlangeBallDeclaration> DeclareFlangeBall(const Dataset& dataset) {
   if (result.targets.empty()) top.Fail("targets", "expected at least one location of the tool");
   if (top.Has("check"))
     for (const YamlMap& tool : top.Maps("check")) result.check.push_back(ReadDeclaration(tool, folder, &names));
-  SetLinks(ReadLinkSetting(dataset), &model);
+  const std::span<Quantity> quantities(&model.quantity(0), model.quantities().size());
+  SetLinks(ReadLinkSetting(dataset),
+           quantities.subspan(FlangeBall::kLinks, model.FirstOfJoints() - FlangeBall::kLinks));
   SCANCAL_RETURN_IF_ERROR(top.Finish());
   for (const ParameterSetting& setting : dataset.parameters)
-    if (setting.name != "links") SCANCAL_RETURN_IF_ERROR(SetParameter(setting, dataset, &model));
+    if (setting.name != "links")
+      SCANCAL_RETURN_IF_ERROR(SetDeclared(setting, dataset, {"links"}, FlangeBall::kSocket, quantities));
   SCANCAL_RETURN_IF_ERROR(CheckSpacing(dataset, model));
   for (const InfluenceSetting& setting : dataset.influences)
     SCANCAL_RETURN_IF_ERROR(SetInfluence(setting, dataset, &model));

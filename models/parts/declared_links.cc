@@ -64,4 +64,11 @@ LinkSetting ReadLinkSetting(const Dataset& dataset) {
   return setting;
 }
 
+void SetLinks(const LinkSetting& setting, std::span<Quantity> links) {
+  for (Quantity& quantity : links) {
+    if (setting.hold) quantity.role = Role::kHold;
+    if (quantity.role == Role::kEstimate) quantity.u = quantity.unit == Unit::kMm ? setting.u_length : setting.u_angle;
+  }
+}
+
 }  // namespace scancal

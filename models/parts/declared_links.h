@@ -1,5 +1,6 @@
 // What a dataset.yaml says of all links of a robot.
 #pragma once
+#include <span>
 #include <vector>
 #include "io/dataset.h"
 #include "models/parts/chain.h"
@@ -19,5 +20,6 @@ struct LinkSetting {
   double u_length = 0, u_angle = 0;  // of the prior of each that is estimated by default; 0: none
 };
 LinkSetting ReadLinkSetting(const Dataset& dataset);
+void SetLinks(const LinkSetting& setting, std::span<Quantity> links);
 
 }  // namespace scancal

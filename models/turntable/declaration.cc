@@ -4,7 +4,9 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 #include "io/message.h"
+#include "models/parts/declared_parameter.h"
 #include "models/turntable/influences.h"
 
 namespace scancal {
@@ -21,10 +23,6 @@ const std::map<std::string, Dimension, std::less<>> kColumns = {
 Dimension DimensionOf(std::string_view column) {
   const auto found = kColumns.find(column);
   return found == kColumns.end() ? Dimension::kNone : found->second;
-}
-
-double UnitFactor(Unit unit, const Units& units) {
-  return units.Of(unit == Unit::kMm ? Dimension::kLength : unit == Unit::kRad ? Dimension::kAngle : Dimension::kNone);
 }
 
 // Of a line or a column: 1 or more.
@@ -120,37 +118,17 @@ GridBox ReadSearch(YamlMap top, const Units& units) {
   return box;
 }
 
-Error InFile(const Dataset& dataset, const std::string& sentence) { return {dataset.file.string() + ": " + sentence}; }
-
-std::vector<std::string> ParameterNames(const Turntable& model) {
-  std::vector<std::string> names;
-  for (const Quantity& quantity : model.quantities())
-    if (quantity.scope == Scope::kSystem) names.push_back(quantity.name);
-  return names;
-}
-
 Result<void> SetParameters(const Dataset& dataset, Turntable* model) {
+  const std::span<Quantity> quantities(&model->quantity(0), model->quantities().size());
   for (const ParameterSetting& setting : dataset.parameters) {
     const std::string place = "parameters: " + setting.name + ": ";
     if (setting.name == "yaw" || setting.name == "shift_z" || setting.name == "Z")
       return InFile(dataset, place +
                                  "not determined by planes (a turn about the axis or a shift along it moves the whole "
                                  "scene); it is no parameter, remove it");
-    const int index = Find(model->quantities(), setting.name);
-    if (index < 0 || model->quantities()[index].scope != Scope::kSystem)
-      return InFile(dataset, place + "unknown parameter" + Suggestion(setting.name, ParameterNames(*model)));
-    Quantity& quantity = model->quantity(index);
-    const double unit = UnitFactor(quantity.unit, dataset.units);
-    quantity.role = setting.role == "estimate"   ? Role::kEstimate
-                    : setting.role == "consider" ? Role::kConsider
-                                                 : Role::kHold;
-    quantity.value = setting.value.value_or(0) * unit;
-    quantity.u = setting.u * unit;
-    const bool offset = index == Turntable::kM || index == Turntable::kN;
-    if (offset && quantity.role != Role::kEstimate && !setting.value)
-      return InFile(dataset, place + setting.role + ": expected its value, for example {" + setting.role + ": 123}");
-    if ((index == Turntable::kScaleY || index == Turntable::kScaleZ) && quantity.role == Role::kEstimate &&
-        quantity.u <= 0)
+    SCANCAL_ASSIGN_OR_RETURN(const int index, SetDeclared(setting, dataset, {}, Turntable::kTiltX, quantities));
+    if ((index == Turntable::kScaleY || index == Turntable::kScaleZ) && quantities[index].role == Role::kEstimate &&
+        quantities[index].u <= 0)
       return InFile(dataset, place +
                                  "not determined by planes (M, N, the distances and the normals absorb a scale "
                                  "exactly); give a prior, {estimate: 0, u: ...}, or consider it");

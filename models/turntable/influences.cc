@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include "io/message.h"
+#include "models/parts/declared_parameter.h"
 
 namespace scancal {
 namespace {
@@ -43,7 +44,7 @@ class Setter {
 
  private:
   Error Wrong(const std::string& influence, const std::string& sentence) const {
-    return {dataset_.file.string() + ": influences: " + influence + ": " + sentence};
+    return InFile(dataset_, "influences: " + influence + ": " + sentence);
   }
 
   Result<void> Set(const InfluenceSetting& setting) {
@@ -70,9 +71,7 @@ class Setter {
     if (index == Turntable::kNoiseZ && setting.role == "estimate")
       return Wrong(setting.name,
                    "expected its standard uncertainty in place of estimate: planes cannot tell it from noise_y");
-    quantity.u = setting.u * dataset_.units.Of(quantity.unit == Unit::kMm    ? Dimension::kLength
-                                               : quantity.unit == Unit::kRad ? Dimension::kAngle
-                                                                             : Dimension::kNone);
+    quantity.u = setting.u * UnitFactor(quantity.unit, dataset_.units);
     // Of what is random, none at all is a declaration too, which the residuals may contradict.
     const bool told = random && index != Turntable::kNoiseZ;
     quantity.role = setting.role == "estimate"                               ? Role::kEstimate
