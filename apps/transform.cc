@@ -18,6 +18,9 @@ Result<int64_t> Transformed(const std::vector<std::string>& arguments) {
   SCANCAL_ASSIGN_OR_RETURN(const ScannerKind* kind, FindScannerKind(dataset));
   SCANCAL_ASSIGN_OR_RETURN(const Json json, ReadJson(FLAGS_calibration));
   SCANCAL_ASSIGN_OR_RETURN(const Calibration calibration, CalibrationFromJson(json, FLAGS_calibration));
+  if (calibration.model != dataset.model)
+    return Error{"the calibration is of model \"" + calibration.model + "\", the data set of \"" + dataset.model +
+                 "\""};
   if (!calibration.ok())
     std::fprintf(stderr, "scancal: warning: %s has status unreliable\n", FLAGS_calibration.c_str());
   SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<PointCloudWriter> cloud, CreatePointCloud(FLAGS_out));

@@ -55,7 +55,8 @@ struct ScannerKind {
   Result<std::unique_ptr<Scanner>> (*load)(const Dataset& dataset);
   // From Scanner::Data(), without the scans: every digit of Calibrate() is the same. file: for messages.
   Result<std::unique_ptr<Scanner>> (*reload)(const Dataset& dataset, const Json& data, const std::string& file);
-  // All points of the data set's scans in the frame of the calibration, streamed; returns their number.
+  // All points of the data set's scans in the frame of the calibration, which is of this model, streamed; returns their
+  // number.
   Result<int64_t> (*transform)(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
   // Points as the scanner shows them, in the frame of the calibration with their uncertainty; distances: of each from
   // the one before.

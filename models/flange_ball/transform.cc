@@ -14,9 +14,6 @@ Result<RobotWithBall> CalibratedRobot(const std::vector<Link>& nominal, const Ca
 }  // namespace
 
 Result<int64_t> TransformFlangeBall(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud) {
-  if (calibration.model != kFlangeBall.name)
-    return Error{"the calibration is of model \"" + calibration.model + "\", the data set of \"" + dataset.model +
-                 "\""};
   SCANCAL_ASSIGN_OR_RETURN(const FlangeBallDeclaration declaration, DeclareFlangeBall(dataset));
   SCANCAL_ASSIGN_OR_RETURN(const RobotWithBall robot, CalibratedRobot(declaration.model.links(), calibration));
   int64_t points = 0;

@@ -19,9 +19,6 @@ Result<RobotSetup> SetupOf(const Calibration& calibration, size_t links) {
 }  // namespace
 
 Result<int64_t> TransformRobot(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud) {
-  if (calibration.model != kRobotBall.name)
-    return Error{"the calibration is of model \"" + calibration.model + "\", the data set of \"" + dataset.model +
-                 "\""};
   SCANCAL_ASSIGN_OR_RETURN(const RobotDeclaration declaration, DeclareRobot(dataset));
   const RobotData& data = declaration.data;
   SCANCAL_ASSIGN_OR_RETURN(const RobotSetup setup, SetupOf(calibration, data.links.size()));

@@ -8,9 +8,6 @@
 namespace scancal {
 
 Result<int64_t> TransformTurntable(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud) {
-  if (calibration.model != kTurntable.name)
-    return Error{"the calibration is of model \"" + calibration.model + "\", the data set of \"" + dataset.model +
-                 "\""};
   SCANCAL_ASSIGN_OR_RETURN(const CalibratedTurntable turntable, CalibratedTurntable::From(calibration));
   Turntable model(Turntable::Residuals::kDepth);
   SCANCAL_ASSIGN_OR_RETURN(const TurntableDeclaration declaration, DeclareTurntable(dataset, &model));

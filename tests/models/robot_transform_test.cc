@@ -22,7 +22,6 @@ class RobotTransformTest : public RobotFilesTest {
   // The true hand-eye, and links without errors.
   static Calibration Calibrated(size_t links) {
     Calibration calibration;
-    calibration.model = kRobotBall.name;
     const RobotBall model(std::vector<Link>(links), {});
     for (const Quantity& quantity : model.quantities())
       if (quantity.scope == Scope::kSystem) calibration.parameters.emplace_back().name = quantity.name;
