@@ -1,10 +1,9 @@
 #include "tests/coverage/trial.h"
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <thread>
 #include "models/turntable/turntable_scanner.h"
 #include "solver/uncertainty/coverage.h"
+#include "tests/in_parallel.h"
 
 namespace scancal::coverage {
 namespace {
@@ -72,17 +71,10 @@ Trial Try(const Row& row, const Oracle& oracle, uint64_t seed) {
 std::vector<Trial> TryAll(const Row& row, size_t number, size_t sets, int threads, const std::function<void()>& done) {
   const Oracle oracle(row.scene);
   std::vector<Trial> trials(sets);
-  std::atomic<size_t> next = 0;
-  const auto work = [&] {
-    for (size_t set = next++; set < sets; set = next++) {
-      trials[set] = Try(row, oracle, (static_cast<uint64_t>(number) << 32) + set);
-      if (done) done();
-    }
-  };
-  std::vector<std::jthread> others;
-  for (int k = 1; k < threads; ++k) others.emplace_back(work);
-  work();
-  others.clear();  // joins
+  InParallel(sets, threads, [&](size_t set) {
+    trials[set] = Try(row, oracle, (static_cast<uint64_t>(number) << 32) + set);
+    if (done) done();
+  });
   return trials;
 }
 

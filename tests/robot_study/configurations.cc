@@ -7,7 +7,7 @@
 #include "models/robot_ball/hand_eye.h"
 #include "models/robot_ball/ren_2012.h"
 #include "solver/random.h"
-#include "tests/robot_study/in_parallel.h"
+#include "tests/in_parallel.h"
 
 namespace scancal::robot_study {
 namespace {

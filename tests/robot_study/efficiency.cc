@@ -9,7 +9,7 @@
 #include "solver/uncertainty/coverage.h"
 #include "solver/uncertainty/headline.h"
 #include "solver/weigh.h"
-#include "tests/robot_study/in_parallel.h"
+#include "tests/in_parallel.h"
 
 namespace scancal::robot_study {
 namespace {

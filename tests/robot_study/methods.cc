@@ -8,8 +8,8 @@
 #include "models/robot_ball/spacing.h"
 #include "models/robot_ball/virtual_point.h"
 #include "models/robot_ball/zhou_2025.h"
+#include "tests/in_parallel.h"
 #include "tests/robot_study/declared.h"
-#include "tests/robot_study/in_parallel.h"
 
 namespace scancal::robot_study {
 namespace {

@@ -5,7 +5,7 @@
 #include <thread>
 #include <vector>
 
-namespace scancal::robot_study {
+namespace scancal {
 
 // work(0) .. work(count - 1), each once, in any order.
 inline void InParallel(size_t count, int threads, const std::function<void(size_t)>& work) {
@@ -18,4 +18,4 @@ inline void InParallel(size_t count, int threads, const std::function<void(size_
   run();
 }
 
-}  // namespace scancal::robot_study
+}  // namespace scancal
