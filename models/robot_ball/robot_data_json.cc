@@ -1,4 +1,5 @@
 #include "models/robot_ball/robot_data_json.h"
+#include <limits>
 #include "models/robot_ball/robot_scanner.h"
 
 namespace scancal {
@@ -41,7 +42,7 @@ RobotBall::View PoseOfJson(const Json& json, size_t joints, size_t spheres) {
   for (const Json& each : json.at("balls")) {
     RobotBall::SeenBall& ball = pose.balls.emplace_back();
     ball.sphere = each.at("sphere");
-    if (ball.sphere < 0 || ball.sphere >= static_cast<int>(spheres)) throw std::out_of_range("sphere");
+    if (ball.sphere < 0 || static_cast<size_t>(ball.sphere) >= spheres) throw std::out_of_range("sphere");
     ball.centre = MatrixOf<Eigen::Vector3d>(each.at("centre"));
     if (each.contains("spread")) ball.spread = MatrixOf<Eigen::Matrix3d>(each["spread"]);
   }
@@ -66,7 +67,7 @@ RobotDeclaration Parsed(const Json& json) {
     for (const Json& pose : each.at("poses"))
       station.views.push_back(PoseOfJson(pose, data.links.size(), data.spheres.size()));
   }
-  constexpr size_t kAny = 1000;  // a length's balls are not of the artifact
+  constexpr size_t kAny = std::numeric_limits<size_t>::max();  // a length's balls are not of the artifact
   for (const Json& each : json.at("check"))
     data.check.push_back({each.at("name"), PoseOfJson(each.at("first"), data.links.size(), kAny),
                           PoseOfJson(each.at("second"), data.links.size(), kAny), each.at("distance"), each.at("u")});

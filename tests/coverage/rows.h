@@ -16,7 +16,7 @@ struct Row {
 };
 
 // Three placements of 100 profiles of 100 points; sweep in degrees. The table of the uncertainty specification, section
-// 4, without its robot, whose model is to come.
+// 4, without its robot, which tests/robot_study is about.
 std::vector<Row> Rows(double sweep_deg = 44);
 
 }  // namespace scancal::coverage
