@@ -21,6 +21,14 @@ const char* ReadCellCarefully(const char* at, ParsedNumber* number) {
   return end;
 }
 
+std::string CellText(std::string_view cell) {
+  const std::string_view quoted = WithoutBlanks(cell);
+  if (quoted.size() < 2 || quoted.front() != '"' || quoted.back() != '"') return std::string(quoted);
+  std::string text(WithoutBlanks(quoted.substr(1, quoted.size() - 2)));
+  for (size_t at = text.find("\"\""); at != std::string::npos; at = text.find("\"\"", at + 1)) text.erase(at, 1);
+  return text;
+}
+
 std::vector<CsvField> SplitCells(std::string_view line) {
   const std::string ended = std::string(line) + '\n';
   const char* const line_start = ended.c_str();
@@ -29,12 +37,8 @@ std::vector<CsvField> SplitCells(std::string_view line) {
   for (const char* at = line_start;; ++at) {
     while (*at == ' ') ++at;
     const char* const end = SkipCell(at);
-    std::string_view text = WithoutBlanks(std::string_view(at, static_cast<size_t>(end - at)));
-    if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
-      text = WithoutBlanks(text.substr(1, text.size() - 2));
-    }
     const std::string_view before(line_start, static_cast<size_t>(at - line_start));
-    fields.push_back({.text = std::string(text), .column = 1 + CountCharacters(before)});
+    fields.push_back({.text = CellText({at, end}), .column = 1 + CountCharacters(before)});
     at = end;
     if (at == line_end) return fields;
   }

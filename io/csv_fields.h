@@ -35,9 +35,12 @@ inline const char* ReadCell(const char* at, const char* end, ColumnParser& parse
   return ReadCellCarefully(at, number);
 }
 
+// What a cell says: without blanks and quotes around it, and a doubled quote within them is one (RFC 4180).
+std::string CellText(std::string_view cell);
+
 // For the lines that are no hurry: the headers and the wrong ones.
 struct CsvField {
-  std::string text;   // without blanks and quotes around it
+  std::string text;   // see CellText
   size_t column = 1;  // where it starts in the line, 1-based, in characters
 };
 std::vector<CsvField> SplitCells(std::string_view line);

@@ -105,13 +105,11 @@ class TableReader {
 
   Result<void> TakeText(const char* cell, const char** at, Table::Column* target) {
     *at = SkipCell(cell);
-    std::string_view text = WithoutBlanks(std::string_view(cell, static_cast<size_t>(*at - cell)));
-    if (text.size() >= 2 && text.front() == '"' && text.back() == '"')
-      text = WithoutBlanks(text.substr(1, text.size() - 2));
+    std::string text = CellText({cell, *at});
     if (text.empty())
       return Error{Place() + ":" + std::to_string(target->starts.back()) + ": " + target->name +
                    ": the cell is empty, expected text"};
-    target->texts.emplace_back(text);
+    target->texts.push_back(std::move(text));
     return {};
   }
 

@@ -74,6 +74,15 @@ TEST_F(TableTest, WhatIsNoPartOfTheCells) {
   EXPECT_THAT(table->Place(1), EndsWith("t.csv:5"));
 }
 
+TEST_F(TableTest, ADoubledQuoteIsOne) {
+  const auto table =
+      Read("\"ball\",x,\"say \"\"x_m\"\"\"\n\"3/4\"\" ball, \"\"A\"\"\",1,?\n\"\"\"\",2,?\n3/4\"\" B,3,?\n");
+  ASSERT_TRUE(table.ok()) << table.error().message;
+  EXPECT_THAT(table->Texts("ball"), ElementsAre("3/4\" ball, \"A\"", "\"", "3/4\"\" B"));
+  EXPECT_THAT(table->Numbers("x"), ElementsAre(1, 2, 3));
+  EXPECT_THAT(Error("ball,\"say \"\"x\"\"\"\nA,1\n"), HasSubstr("found the columns ball, say \"x\", expected"));
+}
+
 TEST_F(TableTest, PlacesCountCharacters) {
   const auto table = Read("note,ball,x\ngrün, A,1\nrot,B,2\n");
   EXPECT_THAT(table->Wrong(0, "ball", "no such ball").message, EndsWith("t.csv:2:7: ball: no such ball"));
