@@ -5,13 +5,15 @@
 #include <cmath>
 #include "io/progress.h"
 #include "models/turntable/turntable_scanner.h"
+#include "solver/uncertainty/headline.h"
 
 namespace scancal {
 namespace {
 
 constexpr double kSteps[] = {1, 0.1, 0.01};  // mm: the published one, and what finer ones bring
 constexpr double kMostNodes = 1e8;           // about a minute
-constexpr double kFewNodes = 1e5;            // as long as a refinement
+constexpr double kFewPlanes = 2e6;           // fitted on a grid: as long as a refinement
+constexpr double kFewLeftOut = 2e4;          // profiles refitted with each placement left out
 constexpr int kThreads = 2;
 
 class Stopwatch {
@@ -103,7 +105,7 @@ std::optional<double> HeldOutRms(const std::vector<Placement>& placements, const
 }
 
 MethodResult GridRow(const TurntableScanner& scanner, const TurntableStart& start, double step, PlaneFit kind,
-                     double most_nodes) {
+                     const CompareChoice& choice) {
   const std::string name =
       fmt::format("grid, {}, step {:g}", kind == PlaneFit::kVertical ? "as published" : "orthogonal", step);
   Progress progress(name);
@@ -114,7 +116,8 @@ MethodResult GridRow(const TurntableScanner& scanner, const TurntableStart& star
   row.quantisation = step / std::sqrt(12.0);
   const auto [rows, columns] = box.Nodes();
   row.effort = static_cast<double>(rows) * static_cast<double>(columns);
-  if (row.effort > most_nodes) {
+  const double most = choice.brief ? kFewPlanes / static_cast<double>(start.storeys.size()) : kMostNodes;
+  if (row.effort > most) {
     row.note = fmt::format("left out: {:.2g} nodes", row.effort);
     return row;
   }
@@ -148,8 +151,16 @@ TurntablePose Left(const TurntableScanner& scanner, const TurntableStart& start,
   return weighted ? scanner.FitWeighted(fit).Pose() : fit.Pose();
 }
 
+bool HoldsOut(const std::vector<Placement>& placements, const CompareChoice& choice) {
+  size_t profiles = 0;
+  for (const Placement& placement : placements) profiles += placement.profiles.size();
+  const auto refitted = static_cast<double>(profiles * placements.size());
+  return placements.size() > 1 && (!choice.brief || refitted <= kFewLeftOut);
+}
+
 MethodResult JointRow(const TurntableScanner& scanner, const TurntableStart& start, const std::string& name,
-                      Turntable::Residuals residuals, bool weighted, const std::vector<int>& estimate) {
+                      Turntable::Residuals residuals, bool weighted, const std::vector<int>& estimate,
+                      const CompareChoice& choice) {
   const Stopwatch watch;
   TurntableFit fit = scanner.Fit(start.pose, residuals, estimate);
   const bool determined = fit.solution.observability.undetermined.empty();
@@ -163,9 +174,12 @@ MethodResult JointRow(const TurntableScanner& scanner, const TurntableStart& sta
   if (!determined) {
     row.note = "not determined: " + fit.solution.observability.undetermined.front();
   } else {
-    for (const Parameter& parameter : Summarize(fit.solution, {}).parameters) {
-      const int k = Find(fit.solution.problem.quantities, parameter.name);
-      if (k <= Turntable::kTiltY && parameter.role == Role::kEstimate) row.u[static_cast<size_t>(k)] = parameter.u;
+    const Problem& problem = fit.solution.problem;
+    const Headline headline = HeadlineOf(fit.solution, ClusteredCovariance(problem, fit.solution.linear));
+    Eigen::Index e = 0;
+    for (const int k : problem.With({Scope::kSystem}, Role::kEstimate)) {
+      if (k <= Turntable::kTiltY) row.u[static_cast<size_t>(k)] = std::sqrt(headline.covariance(e, e));
+      ++e;
     }
     if (!fit.solution.fit.converged) row.note = "no convergence";
   }
@@ -173,7 +187,7 @@ MethodResult JointRow(const TurntableScanner& scanner, const TurntableStart& sta
   row.S = flatness.S;
   row.rms = flatness.rms;
   std::vector<TurntablePose> without;
-  for (size_t t = 0; scanner.placements().size() > 1 && t < scanner.placements().size(); ++t)
+  for (size_t t = 0; HoldsOut(scanner.placements(), choice) && t < scanner.placements().size(); ++t)
     without.push_back(Left(scanner, start, residuals, weighted && determined, estimate, t));
   row.held_out_rms = HeldOutRms(scanner.placements(), without);
   return row;
@@ -185,14 +199,13 @@ Result<Comparison> TurntableScanner::Compare(const CompareChoice& choice) const 
   SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
   std::vector<MethodResult> results;
   for (const PlaneFit kind : {PlaneFit::kVertical, PlaneFit::kOrthogonal})
-    for (const double step : kSteps)
-      results.push_back(GridRow(*this, start, step, kind, choice.brief ? kFewNodes : kMostNodes));
+    for (const double step : kSteps) results.push_back(GridRow(*this, start, step, kind, choice));
   using enum Turntable::Residuals;
-  results.push_back(JointRow(*this, start, "joint, point to plane", kPlane, false, {}));
-  results.push_back(JointRow(*this, start, "joint, depth", kDepth, false, {}));
-  results.push_back(
-      JointRow(*this, start, "joint, depth, weighted, tilts", kDepth, true, {Turntable::kTiltX, Turntable::kTiltY}));
-  results.push_back(JointRow(*this, start, "joint, depth, weighted", kDepth, true, {}));
+  results.push_back(JointRow(*this, start, "joint, point to plane", kPlane, false, {}, choice));
+  results.push_back(JointRow(*this, start, "joint, depth", kDepth, false, {}, choice));
+  results.push_back(JointRow(*this, start, "joint, depth, weighted, tilts", kDepth, true,
+                             {Turntable::kTiltX, Turntable::kTiltY}, choice));
+  results.push_back(JointRow(*this, start, "joint, depth, weighted", kDepth, true, {}, choice));
   return Tabulate(results);
 }
 

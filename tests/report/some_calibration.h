@@ -35,7 +35,9 @@ inline Calibration SomeCalibration() {
                 {{"off the line of their profile", 2}, {"off the plane of their target", 5}},
                 {{"normal", {0, -1, 0}}, {"distance", {480}}},
                 0.05,
-                {{0, 1, 2}, {1, 0.25, 0}, 1.5, false, 0.04, 8, {1, 700, 0}, 2, 3}}};
+                {{0, 1, 2}, {1, 0.25, 0}, 1.5, false, 0.04, 8, {1, 700, 0}, 2, 3},
+                {},
+                {}}};
   c.sigma = 0.05;
   c.inputs = {{"left.csv", "abc"}};
   c.command = "scancal refine data";
@@ -50,7 +52,8 @@ inline Calibration WithBudgetAndVolume() {
               {"tilt_x", 'B', Unit::kRad, 2e-4, {3.5, -1.25}, {7e-4, 2.5e-4}, {0.2, 0.4}, INFINITY}};
   c.volume = {{"alpha", "y", "X", "Y", "Z", "U_x", "U_y", "U_z", "U_max"},
               {Unit::kRad, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm},
-              {{-0.25, 40, 1, 2, 3, 0.01, 0.02, 0.03, 0.031}, {0.25, 160, 4, 5, 6, 0.1, 0.2, 0.3, 0.312}}};
+              {{-0.25, 40, 1, 2, 3, 0.01, 0.02, 0.03, 0.031}, {0.25, 160, 4, 5, 6, 0.1, 0.2, 0.3, 0.312}},
+              {}};
   return c;
 }
 
