@@ -26,7 +26,7 @@ FormModes FormModesAt(double u, double v, double aspect) {
   double squares = 0;
   for (int degree = kLowest; degree <= kHighest; ++degree) {
     for (int i = 0; i <= degree; ++i) {
-      const double share = std::pow(i + aspect * (degree - i), -2);
+      const double waves = i + aspect * (degree - i), share = 1 / (waves * waves);
       modes[k++] = share * in_u[i] * in_v[degree - i];
       squares += share * share;
     }

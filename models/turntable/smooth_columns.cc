@@ -67,20 +67,22 @@ Eigen::MatrixXd AsLine(const Profile& profile, const Turntable::View& view, Eige
 void AddForm(const std::vector<Profile>& profiles, const TurntablePose& pose, const Eigen::Vector3d& normal,
              double distance, std::vector<Turntable::View>* views) {
   const PlateFrame frame(normal);
+  std::vector<Eigen::Affine3d> table_from_sensor;
+  for (const Profile& profile : profiles) table_from_sensor.push_back(pose.TableFromSensor(profile.alpha));
   // Where the line of sight meets the plane: at the measured point itself, its noise would be a form.
-  const auto on_plate = [&](const Profile& profile, const PseudoPoint& p) -> Eigen::Array2d {
-    const Eigen::Vector3d measured = pose.Point(profile.alpha, p.y, p.z);
-    const Eigen::Vector3d sight = measured - pose.Point(profile.alpha, 0, profile.ranged ? 0 : p.z);
+  const auto on_plate = [&](size_t k, const PseudoPoint& p) -> Eigen::Array2d {
+    const Eigen::Vector3d measured = table_from_sensor[k] * Eigen::Vector3d(0, p.y, p.z);
+    const Eigen::Vector3d sight = measured - table_from_sensor[k] * Eigen::Vector3d(0, 0, profiles[k].ranged ? 0 : p.z);
     return frame.At(measured - (normal.dot(measured) - distance) / normal.dot(sight) * sight).array();
   };
   Bounds plate;
-  for (const Profile& profile : profiles)
-    for (const ProfileFactor& segment : profile.segments)
-      for (const PseudoPoint& p : Ends(segment)) plate.Add(on_plate(profile, p));
+  for (size_t k = 0; k < profiles.size(); ++k)
+    for (const ProfileFactor& segment : profiles[k].segments)
+      for (const PseudoPoint& p : Ends(segment)) plate.Add(on_plate(k, p));
   for (size_t k = 0; k < profiles.size(); ++k) {
     Turntable::View& view = (*views)[k];
     view.form = AsLine(profiles[k], view, kFormModes, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
-      const Eigen::Array2d at = plate.Scaled(on_plate(profiles[k], p));
+      const Eigen::Array2d at = plate.Scaled(on_plate(k, p));
       return Eigen::Map<const Eigen::RowVectorXd>(FormModesAt(at[0], at[1], plate.Aspect()).data(), kFormModes);
     });
   }

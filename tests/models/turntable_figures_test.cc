@@ -350,5 +350,23 @@ TEST(TurntableFigures, WhatWasDeclaredIsListed) {
   EXPECT_EQ(by_source["encoder_jitter"].scope, Scope::kView);
 }
 
+TEST(TurntableFigures, ABriefComparisonLeavesOutWhatTakesLong) {
+  std::vector<Placement> many;
+  for (int copy = 0; copy < 16; ++copy)
+    for (Placement& placement : Seen(30).placements) many.push_back(placement);
+  const Result<Comparison> few = ScannerOf(Seen(30).placements).Compare({.brief = true}),
+                           all = ScannerOf(many).Compare({.brief = true});
+  ASSERT_TRUE(few.ok() && all.ok());
+  constexpr size_t kHeldOut = 6;
+  ASSERT_EQ(few->columns[kHeldOut].name, "held out/um");
+  ASSERT_EQ(few->rows.size(), 10U);
+  EXPECT_EQ(few->rows[1].note, "");  // step 0.1: 60,501 nodes
+  EXPECT_THAT(few->rows[2].note, ::testing::HasSubstr("left out"));
+  EXPECT_THAT(all->rows[1].note, ::testing::HasSubstr("left out"));  // of 48 placements
+  EXPECT_TRUE(few->rows.back().cells[kHeldOut].value);
+  EXPECT_FALSE(all->rows.back().cells[kHeldOut].value);  // 48 fits of 1440 profiles
+  EXPECT_TRUE(all->rows[0].cells[kHeldOut].value);       // a grid has it for nothing
+}
+
 }  // namespace
 }  // namespace scancal
