@@ -1,5 +1,6 @@
 """Methods on the same data, as "compare" of calibration.json has them; the last one is the reference."""
 import math
+import re
 
 from calibration import Calibration
 
@@ -29,8 +30,8 @@ def methods(c: Calibration) -> list[dict]:
 
 
 def columns(rows: list[dict]) -> list[str]:
-    """In the order of the file; a method that was left out has no cells."""
-    return list(dict.fromkeys(cell["column"] for row in rows for cell in row.get("cells") or []))
+    """In the order of the reference; a method that was left out has no cells."""
+    return list(dict.fromkeys(cell["column"] for row in reversed(rows) for cell in row.get("cells") or []))
 
 
 def cell(row: dict, column: str) -> Cell:
@@ -48,6 +49,12 @@ def u(row: dict, column: str) -> float:
 
 def _known(number: float | None) -> float:
     return math.nan if number is None else number
+
+
+def column_title(column: str, t) -> str:
+    """A column of a location or of a tool is called as that is."""
+    title = t.named("comparison.column", column)
+    return re.sub(r"/(\w+)$", r" / \1", column) if title == column else title
 
 
 def method_name(row: dict, t) -> str:

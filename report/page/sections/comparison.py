@@ -1,7 +1,7 @@
 """Tables of the methods: as many columns in each as a page is wide."""
 import math
 
-from comparison import SUMMARIES, cell, columns, method_name, methods
+from comparison import SUMMARIES, cell, column_title, columns, method_name, methods
 from notation import concise, count, significant
 
 WIDTH = 66  # characters beside the names of the methods
@@ -15,7 +15,7 @@ def content(c, previous, t) -> dict[str, object]:
     shown = [column for column in columns(rows) if not _says_nothing(column, rows)]
     notes = list(dict.fromkeys(row["note"] for row in rows if row.get("note")))
     tables = [_table(part, k == 0, rows, notes, t) for k, part in enumerate(_parts(shown, rows, t))]
-    return {"tables": tables, "notes": [t.sentence(note) for note in notes],
+    return {"tables": tables, "notes": [(_mark(k), t.sentence(note)) for k, note in enumerate(notes)],
             "about": t(f"comparison.about.{c['model']}")}
 
 
@@ -34,7 +34,7 @@ def _parts(shown: list[str], rows: list[dict], t) -> list[list[str]]:
     for group in (first, [column for column in shown if column not in first]):
         left = 0
         for column in group:
-            width = 2 + max([len(word) for word in t.named("comparison.column", column).split()]
+            width = 2 + max([len(word) for word in column_title(column, t).split()]
                             + [len(_text(row, column, rows, t)) for row in rows])
             if width > left:
                 parts.append([])
@@ -46,9 +46,9 @@ def _parts(shown: list[str], rows: list[dict], t) -> list[list[str]]:
 
 def _table(part: list[str], first: bool, rows: list[dict], notes: list[str], t) -> dict:
     rows = [row for row in rows if first or row.get("cells")]  # what was left out is said once
-    return {"columns": [t.named("comparison.column", column) for column in part],
+    return {"columns": [column_title(column, t) for column in part],
             "rows": [{"method": method_name(row, t),
-                      "note": notes.index(row["note"]) + 1 if row.get("note") else 0,
+                      "note": _mark(notes.index(row["note"])) if row.get("note") else "",
                       "cells": [_text(row, column, rows, t) for column in part]} for row in rows]}
 
 
@@ -63,3 +63,8 @@ def _text(row: dict, column: str, rows: list[dict], t) -> str:
     if any(cell(other, column).get("u") for other in rows):
         return t.number(significant(value, 6))
     return t.number(significant(value, 2 if column.isdecimal() or column in ROUGH else 3))
+
+
+def _mark(note: int) -> str:
+    """A letter: a figure above a number would be its power."""
+    return "abcdefghijklmnopqrstuvwxyz"[note % 26]
