@@ -4,6 +4,7 @@ from language import Language
 from notation import count, shortened
 
 FEW_NAMES, LONGEST_NAME = 6, 40
+COORDINATES = 3  # of a ball: what a robot's targets count as points
 
 
 def sentences(c: Calibration, t: Language) -> list[str]:
@@ -25,6 +26,8 @@ def _seen(c: Calibration, t: Language) -> str:
     key = "one" if len(targets) == 1 else "few" if len(targets) <= FEW_NAMES else "many"
     numbers = {"views": _views(c)} | {what: sum(target.get(what) or 0 for target in targets)
                                       for what in ("points", "missing", "set_aside")}
+    if not c.is_turntable:
+        numbers["points"] /= COORDINATES
     counted = [t(f"{words}.{what}", count=count(number)) for what, number in numbers.items() if number]
     return t(f"{words}.seen", targets=t(f"{words}.targets_{key}", count=len(targets), names=names),
              counted=", ".join(counted))

@@ -1,5 +1,7 @@
-"""Residuals of scans of flat targets, from the tables of calibration.json to what the figures show. Of a robot's balls:
-nothing here."""
+"""Residuals of scans of flat targets, from the tables of calibration.json to what the figures show.
+
+Nothing here of a robot's balls.
+"""
 from statistics import NormalDist
 
 import numpy as np
@@ -11,12 +13,13 @@ MOST_LINES = 6    # targets in one pair of axes: as many as there are colours an
 
 
 def scanned_targets(c: Calibration) -> list[dict]:
-    """c["residuals"]["targets"], of which each also gets the "rms" of its target and how many "profiles" it has; none if
-    it has balls."""
+    """c["residuals"]["targets"], of which each also gets the "rms" of its target and its count of "profiles";
+    none if there are balls."""
     targets = (c.get("residuals") or {}).get("targets") or []
     if any(target.get("balls") or target.get("poses") for target in targets):
         return []
-    summaries, read = (_of_each(targets, found) for found in (c.get("targets"), (c.get("data") or {}).get("targets")))
+    summaries = _of_each(targets, c.get("targets"))
+    read = _of_each(targets, (c.get("data") or {}).get("targets"))
     return [{**target, "rms": summary.get("rms"), "profiles": of_data.get("profiles")}
             for target, summary, of_data in zip(targets, summaries, read)]
 
@@ -37,8 +40,8 @@ def worst(targets: list[dict], most: int) -> list[dict]:
 
 
 class Histogram:
-    """Residuals in units of the standard deviation of their target, pooled: counts in bins of equal width, and how many
-    lie beyond either end. Targets whose bins differ from those of the first are left out."""
+    """Residuals in units of the standard deviation of their target, pooled: counts in bins of equal width and
+    how many lie beyond either end. Targets whose bins differ from those of the first are left out."""
 
     def __init__(self, targets: list[dict]):
         self.counts, self.edges, self.below, self.above = np.zeros(0), np.zeros(1), 0, 0
@@ -67,8 +70,9 @@ class Histogram:
         return self.counts / (self.total * np.diff(self.edges))
 
     def quantiles(self) -> tuple[np.ndarray, np.ndarray]:
-        """At every edge of a bin with residuals on both sides: the quantile of the normal distribution below which it
-        would have as large a share, and the edge itself. Of the edges of an empty bin only that towards the middle."""
+        """At every edge of a bin with residuals on both sides: the quantile of the normal distribution below
+        which it would have as large a share, and the edge itself. Of the edges of an empty bin only the one
+        towards the middle."""
         all_counts = np.concatenate([[self.below], self.counts, [self.above]])
         share = np.cumsum(all_counts)[:-1] / self.total
         outer = np.where(share < 0.5, all_counts[:-1], all_counts[1:])
@@ -76,8 +80,14 @@ class Histogram:
         return np.array([NormalDist().inv_cdf(p) for p in share[inside]]), self.edges[inside]
 
 
-def along_the_line(cells: Table, bins: int = 24) -> tuple[np.ndarray, np.ndarray]:
-    """z and mean residual of the points of all cells whose middles lie in the same one of so many bins."""
+def panel_columns(panels: int) -> int:
+    """Panels side by side."""
+    return {1: 1, 2: 2, 4: 2}.get(panels, 3)
+
+
+def along_the_line(cells: Table, bins: int = 24) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """z and mean residual of the points of all cells whose middles lie in the same one of so many bins, and
+    how many points these are."""
     cells_middle, points, residual = (cells["z_from"] + cells["z_to"]) / 2, cells["points"], cells["residual"]
     edges = np.linspace(cells["z_from"].min(), cells["z_to"].max(), bins + 1)
     bin_of = np.clip(np.searchsorted(edges, cells_middle, side="right") - 1, 0, bins - 1)
@@ -85,7 +95,17 @@ def along_the_line(cells: Table, bins: int = 24) -> tuple[np.ndarray, np.ndarray
     total, z, mean = (np.bincount(bin_of[used], (points * each)[used], minlength=bins)
                       for each in (np.ones(len(points)), cells_middle, residual))
     filled = total > 0
-    return z[filled] / total[filled], mean[filled] / total[filled]
+    return z[filled] / total[filled], mean[filled] / total[filled], total[filled]
+
+
+def noise_of_mean(target: dict, points: np.ndarray) -> np.ndarray:
+    """u of the mean of so many points, mm, from the scatter within the lines."""
+    return (target.get("sigma") or 0) / np.sqrt(points) * correlation_factor(target)
+
+
+def correlation_factor(target: dict) -> float:
+    """By which the u of a mean along a line is larger than that of as many independent points."""
+    return np.sqrt(max(1.0, target.get("correlation_length") or 1.0))
 
 
 def white_noise_band(numbers: int) -> float:

@@ -1,4 +1,4 @@
-"""The searched surface S(M, N) (Zhao et al. 2021, eq. 15, Fig. 6) from its table, and the scale that shows it."""
+"""The searched surface S(M, N) (Zhao et al. 2021, eq. 15, Fig. 6) from its table, and a scale for it."""
 import numpy as np
 from matplotlib.colors import LogNorm, Normalize
 

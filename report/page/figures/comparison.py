@@ -1,4 +1,4 @@
-"""What each method gives: of a turntable M and N against the reference, of a robot the errors of its lengths."""
+"""What each method gives: of a turntable M and N against the reference, of a robot the errors of lengths."""
 import math
 
 import numpy as np
@@ -24,7 +24,8 @@ def caption(c: Calibration, t) -> dict[str, str]:
         return {"read": t("figure.comparison.robot")}
     rows = [row for row in methods(c) if row.get("cells")]
     far = any(_Offsets(name, c, rows).are_far for name in "MN")
-    return {"read": t("figure.comparison.turntable", logarithmic=t("figure.comparison.logarithmic") if far else "")}
+    logarithmic = t("figure.comparison.logarithmic") if far else ""
+    return {"read": t("figure.comparison.turntable", logarithmic=logarithmic)}
 
 
 class _Offsets:
@@ -45,7 +46,8 @@ class _Offsets:
 
 
 def _offsets(c: Calibration, rows: list[dict], t) -> style.Figure | None:
-    parameters = [offsets for offsets in (_Offsets(name, c, rows) for name in "MN") if np.isfinite(offsets.apart).any()]
+    parameters = [_Offsets(name, c, rows) for name in "MN"]
+    parameters = [offsets for offsets in parameters if np.isfinite(offsets.apart).any()]
     if not parameters:
         return None
     figure, grid = style.new_figure(0.9 + 0.26 * len(rows), 1, len(parameters), squeeze=False, sharey=True)
@@ -81,7 +83,7 @@ def _offset(axes, offsets: _Offsets, t) -> None:
 
 
 def _logarithmic(axes, near: float, far: float, t) -> None:
-    """From the power of ten above near on, to both sides; as many ticks as there is room for, a small one a decade."""
+    """From the power of ten above near on, to both sides: as many ticks as have room, small ones between."""
     first, last = math.ceil(math.log10(near)), max(math.ceil(math.log10(near)), math.floor(math.log10(far)))
     axes.set_xscale("symlog", linthresh=10.0**first)
     powers = 10.0 ** np.arange(last, first - 1, -max(1, -(-(last - first) // 2)))
@@ -98,11 +100,12 @@ def _errors(rows: list[dict], t) -> style.Figure | None:
     figure, axes = style.new_figure(1.1 + 0.34 * len(rows))
     places = np.arange(len(rows))
     for k, column in enumerate(lengths):
-        axes.plot(_sizes(rows, column), places, "o", color=style.TERTIARY, markersize=5, markeredgecolor=style.PRIMARY,
-                  markeredgewidth=0.5, label=t("figure.comparison.single") if k == 0 else None)
+        axes.plot(_sizes(rows, column), places, "o", color=style.TERTIARY, markersize=5,
+                  markeredgecolor=style.PRIMARY, markeredgewidth=0.5,
+                  label=t("figure.comparison.single") if k == 0 else None)
     for column, color in zip(summaries, (style.INK, style.SECONDARY, style.PRIMARY, style.MUTED)):
-        axes.plot(_sizes(rows, column), places, linestyle="none", marker=MARKERS[column], color=color, markersize=8,
-                  markeredgewidth=1.8, markerfacecolor="none",
+        axes.plot(_sizes(rows, column), places, linestyle="none", marker=MARKERS[column], color=color,
+                  markersize=8, markeredgewidth=1.8, markerfacecolor="none",
                   label=t.named("comparison.column", column).split(" / ")[0])
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter(style.plain_numbers(t))

@@ -24,9 +24,9 @@ def draw(c: Calibration, t) -> style.Figure | None:
 def caption(c: Calibration, t) -> dict[str, str]:
     histogram = Histogram(scanned_targets(c))
     beyond = histogram.below + histogram.above
-    return {"total": count(histogram.total),
-            "beyond": t("figure.residual_histogram.beyond", beyond=count(beyond), limit=significant(histogram.edges[-1], 1))
-            if beyond else ""}
+    limit = t.number(significant(histogram.edges[-1], 2))
+    words = t("figure.residual_histogram.beyond", beyond=count(beyond), limit=limit)
+    return {"total": count(histogram.total), "beyond": words if beyond else ""}
 
 
 def _density(axes, histogram: Histogram, t) -> None:
@@ -63,7 +63,7 @@ def _normal(x: np.ndarray) -> np.ndarray:
 
 
 def _band(x: np.ndarray, total: float) -> tuple[np.ndarray, np.ndarray]:
-    """Where 95 % of the quantiles of so many independent normal residuals lie; nan where too few lie beyond."""
+    """Where 95 % of the quantiles of so many independent residuals lie; nan where too few lie beyond."""
     share = np.array([NormalDist().cdf(each) for each in x])
     known = total * np.minimum(share, 1 - share) >= LEAST
     half = np.where(known, 1.96 * np.sqrt(share * (1 - share) / total) / _normal(x), np.nan)

@@ -1,10 +1,10 @@
-"""Residuals along the laser line: their mean by place, and how far the noise of a point is seen in its neighbours."""
+"""Residuals along the laser line: their mean by place, and how far the noise of a point is seen in others."""
 import numpy as np
 
 import style
 from calibration import Calibration, Table
 from notation import length_unit, shortened
-from residuals import MOST_LINES, along_the_line, scanned_targets, white_noise_band, with_table, worst
+from residuals import MOST_LINES, along_the_line, noise_of_mean, scanned_targets, with_table, worst
 
 
 def draw(c: Calibration, t) -> style.Figure | None:
@@ -23,8 +23,8 @@ def draw(c: Calibration, t) -> style.Figure | None:
 def caption(c: Calibration, t) -> dict[str, str]:
     targets = scanned_targets(c)
     parts = [t(f"figure.residual_line{part.__name__.replace('_by', '.by')}") for part in _parts(targets)]
-    return {"parts": " ".join(parts), "notes": t("figure.residual_line.some", shown=MOST_LINES, all=len(targets))
-            if len(targets) > MOST_LINES else ""}
+    some = t("figure.residual_line.some", shown=MOST_LINES, all=len(targets))
+    return {"parts": " ".join(parts), "notes": some if len(targets) > MOST_LINES else ""}
 
 
 def _parts(targets: list[dict]) -> list:
@@ -36,9 +36,11 @@ def _parts(targets: list[dict]) -> list:
 def _by_place(axes, targets: list[dict], t) -> None:
     chosen = worst(with_table(targets, "cells"), MOST_LINES)
     lines = [along_the_line(Table(target["cells"])) for target in chosen]
-    factor, unit = length_unit(max(np.max(np.abs(mean), initial=0) for _, mean in lines))
-    for (z, mean), target, look in zip(lines, chosen, _looks()):
+    factor, unit = length_unit(max(np.max(np.abs(mean), initial=0) for _, mean, _ in lines))
+    for (z, mean, points), target, look in zip(lines, chosen, _looks()):
         axes.plot(z, factor * mean, label=shortened(target["name"]), **look)
+        axes.errorbar(z, factor * mean, 2 * factor * noise_of_mean(target, points), linestyle="none",
+                      ecolor=look["color"], elinewidth=0.7)
     axes.axhline(0, color=style.MUTED, linewidth=0.7, linestyle="-", zorder=0)
     axes.set_xlabel(t("figure.residual_line.z"))
     axes.set_ylabel(t("figure.residual_line.mean", unit=unit))

@@ -7,10 +7,9 @@ from matplotlib.collections import PolyCollection
 import style
 from calibration import Calibration, Table
 from notation import length_unit, shortened
-from residuals import MOST_PANELS, scanned_targets, with_table, worst
+from residuals import MOST_PANELS, panel_columns, scanned_targets, with_table, worst
 
-MOST_VECTORS = 3000  # cells: more are a picture
-COLUMNS = 3
+MOST_VECTORS = 1000  # cells: more are a picture
 
 
 def draw(c: Calibration, t) -> style.Figure | None:
@@ -20,7 +19,7 @@ def draw(c: Calibration, t) -> style.Figure | None:
     tables = [Table(target["cells"]) for target in targets]
     limit, saturated = _limit(_residuals(targets))
     factor, unit = length_unit(limit)
-    columns = min(COLUMNS, len(targets))
+    columns = panel_columns(len(targets))
     rows = math.ceil(len(targets) / columns)
     figure, grid = style.new_figure(0.4 + (1.75 if rows < 3 else 1.45) * rows, rows, columns, squeeze=False)
     many = sum(map(len, tables)) > MOST_VECTORS
@@ -31,14 +30,14 @@ def draw(c: Calibration, t) -> style.Figure | None:
         axes.add_collection(cells)
         axes.autoscale_view()
         axes.margins(0.02)
-        axes.set_title(shortened(target["name"], 26), fontsize=8)
+        axes.set_title(shortened(target["name"], 20), fontsize=8)
         axes.locator_params(nbins=5)
     for axes in grid.flat[len(targets):]:
         axes.set_axis_off()
     figure.supxlabel(t("figure.residual_map.angle"), fontsize=9)
     figure.supylabel(t("figure.residual_map.z"), fontsize=9)
-    figure.colorbar(cells, ax=grid, label=t("figure.residual_map.residual", unit=unit), aspect=15 * rows, pad=0.02,
-                    extend="both" if saturated else "neither")
+    figure.colorbar(cells, ax=grid, label=t("figure.residual_map.residual", unit=unit), aspect=15 * rows,
+                    pad=0.02, extend="both" if saturated else "neither")
     return figure
 
 
@@ -61,8 +60,8 @@ def _residuals(targets: list[dict]) -> np.ndarray:
 
 
 def _limit(residuals: np.ndarray) -> tuple[float, bool]:
-    """The end of the scale, the same to both sides, and whether some lie beyond: few that are far off shall not take
-    the colours from all others."""
+    """The end of the scale, the same to both sides, and whether some lie beyond: few that are far off shall
+    not take the colours from all others."""
     sizes = np.abs(residuals[np.isfinite(residuals)])
     if not sizes.size or not sizes.max() > 0:
         return 1e-3, False

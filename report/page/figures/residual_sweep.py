@@ -6,9 +6,9 @@ import numpy as np
 import style
 from calibration import Calibration, Table
 from notation import length_unit, shortened
-from residuals import MOST_LINES, MOST_PANELS, scanned_targets, white_noise_band, with_table, worst
+from residuals import (MOST_LINES, MOST_PANELS, correlation_factor, panel_columns, scanned_targets,
+                       white_noise_band, with_table, worst)
 
-COLUMNS = 3
 MOST_VECTORS = 3000  # profiles: more are a picture
 
 
@@ -17,7 +17,7 @@ def draw(c: Calibration, t) -> style.Figure | None:
     if not targets:
         return None
     correlated = with_table(worst(scanned_targets(c), MOST_LINES), "sweep_correlation")
-    columns = min(COLUMNS, len(targets))
+    columns = panel_columns(len(targets))
     rows = math.ceil(len(targets) / columns)
     heights = [(1.5 if rows < 3 else 1.25) * rows + 0.3] + ([2.2] if correlated else [])
     figure = style.pyplot.figure(figsize=(style.WIDTH, sum(heights)))
@@ -49,11 +49,13 @@ def _sweeps(part, grid, targets: list[dict], t) -> None:
     many = sum(map(len, tables)) > MOST_VECTORS
     for axes, target, table in zip(grid.flat, targets, tables):
         order = np.argsort(table["alpha"], kind="stable")
-        angle, mean, u = np.degrees(table["alpha"])[order], factor * table["residual"][order], factor * table["u"][order]
-        axes.fill_between(angle, mean - 2 * u, mean + 2 * u, color=style.TERTIARY, linewidth=0, rasterized=many)
+        angle, mean = np.degrees(table["alpha"])[order], factor * table["residual"][order]
+        u = factor * table["u"][order] * correlation_factor(target)
+        axes.fill_between(angle, mean - 2 * u, mean + 2 * u, color=style.TERTIARY, linewidth=0,
+                          rasterized=many)
         axes.plot(angle, mean, color=style.PRIMARY, linewidth=0.8, linestyle="-", rasterized=many)
         axes.axhline(0, color=style.INK, linewidth=0.7, linestyle="-")
-        axes.set_title(shortened(target["name"], 26), fontsize=8)
+        axes.set_title(shortened(target["name"], 20), fontsize=8)
         axes.margins(x=0.02)
         axes.locator_params(nbins=5)
     for axes in grid.flat[len(targets):]:
@@ -70,8 +72,8 @@ def _correlations(axes, targets: list[dict], t) -> None:
     for target, color, dash, marker in zip(targets, style.SERIES, style.DASHES, style.MARKERS):
         table = Table(target["sweep_correlation"])
         after = table["lag"] > 0
-        axes.plot(table["lag"][after], table["correlation"][after], color=color, linestyle=dash, marker=marker,
-                  markersize=3, label=shortened(target["name"]))
+        axes.plot(table["lag"][after], table["correlation"][after], color=color, linestyle=dash,
+                  marker=marker, markersize=3, label=shortened(target["name"]))
     axes.set_xlabel(t("figure.residual_sweep.lag"))
     axes.set_ylabel(t("figure.residual_sweep.autocorrelation"))
     axes.legend(loc="upper left", bbox_to_anchor=(1, 1))

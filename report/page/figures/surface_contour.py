@@ -36,7 +36,8 @@ def caption(c: Calibration, t) -> dict[str, str]:
     if joint and near(c):
         which = t("figure.surface_contour.two") if len(c.estimated) == 2 else \
             t("figure.surface_contour.all", count=len(c.estimated))
-        notes.append(t("figure.surface_contour.region", parameters=which, k=t.number(significant(joint[1], 3))))
+        k = t.number(significant(joint[1], 3))
+        notes.append(t("figure.surface_contour.region", parameters=which, k=k))
         sides = _sides(near(c))
         extent = np.ptp(outline(np.zeros(2), *joint), axis=1)
         if (extent < SMALLEST * sides).all():
@@ -71,7 +72,8 @@ def _contours(figure, axes, surface: Surface, unit_of_S: tuple[float, str], t) -
     axes.set_xlabel(t("figure.surface_contour.M"))
     axes.set_ylabel(t("figure.surface_contour.N"))
     axes.locator_params(nbins=6)
-    bar = figure.colorbar(filled, ax=axes, orientation="horizontal", label=t("figure.surface_contour.S", unit=unit))
+    bar = figure.colorbar(filled, ax=axes, orientation="horizontal",
+                          label=t("figure.surface_contour.S", unit=unit))
     bar.set_ticks((factor * levels)[::2] if surface.is_logarithmic else ticker.MaxNLocator(5))
     if surface.is_logarithmic:
         bar.ax.xaxis.set_major_formatter(style.plain_numbers(t))
@@ -82,8 +84,9 @@ def _points(axes, surface: Surface, c: Calibration, t) -> None:
                                            (refined(c), "o", 5, "white", "refined")):
         if at:  # whole where it lies on the edge, not at all outside
             drawn = at if surface.holds(*at) else (np.nan, np.nan)
-            axes.plot(*drawn, marker=marker, markersize=size, color=color, linestyle="none", clip_on=False, zorder=5,
-                      markeredgecolor=style.INK, markeredgewidth=0.8, label=t(f"figure.surface_contour.{label}"))
+            axes.plot(*drawn, marker=marker, markersize=size, color=color, linestyle="none", clip_on=False,
+                      zorder=5, markeredgecolor=style.INK, markeredgewidth=0.8,
+                      label=t(f"figure.surface_contour.{label}"))
 
 
 def _frame(axes, surface: Surface) -> None:

@@ -1,11 +1,11 @@
 """Tables of the methods: as many columns in each as a page is wide."""
 import math
 
-from comparison import SUMMARIES, cell, columns, method_name, methods
+from comparison import SUMMARIES, cell, column_title, columns, method_name, methods
 from notation import concise, count, significant
 
 WIDTH = 66  # characters beside the names of the methods
-VALUES = ["M/mm", "N/mm", "ΔM/u", "ΔN/u", "tilt_x/mrad", "tilt_y/mrad"]  # of a turntable: in one table, in this order
+VALUES = ["M/mm", "N/mm", "ΔM/u", "ΔN/u", "tilt_x/mrad", "tilt_y/mrad"]  # in one table, in this order
 WHOLE = ["nodes, iter."]
 ROUGH = ["ΔM/u", "ΔN/u"]  # two digits are enough, as for single lengths
 
@@ -15,7 +15,8 @@ def content(c, previous, t) -> dict[str, object]:
     shown = [column for column in columns(rows) if not _says_nothing(column, rows)]
     notes = list(dict.fromkeys(row["note"] for row in rows if row.get("note")))
     tables = [_table(part, k == 0, rows, notes, t) for k, part in enumerate(_parts(shown, rows, t))]
-    return {"tables": tables, "notes": [t.sentence(note) for note in notes], "about": t(f"comparison.about.{c['model']}")}
+    return {"tables": tables, "notes": [(_mark(k), t.sentence(note)) for k, note in enumerate(notes)],
+            "about": t(f"comparison.about.{c['model']}")}
 
 
 def _says_nothing(column: str, rows: list[dict]) -> bool:
@@ -33,7 +34,7 @@ def _parts(shown: list[str], rows: list[dict], t) -> list[list[str]]:
     for group in (first, [column for column in shown if column not in first]):
         left = 0
         for column in group:
-            width = 2 + max([len(word) for word in t.named("comparison.column", column).split()]
+            width = 2 + max([len(word) for word in column_title(column, t).split()]
                             + [len(_text(row, column, rows, t)) for row in rows])
             if width > left:
                 parts.append([])
@@ -45,8 +46,9 @@ def _parts(shown: list[str], rows: list[dict], t) -> list[list[str]]:
 
 def _table(part: list[str], first: bool, rows: list[dict], notes: list[str], t) -> dict:
     rows = [row for row in rows if first or row.get("cells")]  # what was left out is said once
-    return {"columns": [t.named("comparison.column", column) for column in part],
-            "rows": [{"method": method_name(row, t), "note": notes.index(row["note"]) + 1 if row.get("note") else 0,
+    return {"columns": [column_title(column, t) for column in part],
+            "rows": [{"method": method_name(row, t),
+                      "note": _mark(notes.index(row["note"])) if row.get("note") else "",
                       "cells": [_text(row, column, rows, t) for column in part]} for row in rows]}
 
 
@@ -58,5 +60,11 @@ def _text(row: dict, column: str, rows: list[dict], t) -> str:
         return count(value)
     if u:
         return t.number(concise(value, u))
-    of_precise = any(cell(other, column).get("u") for other in rows)
-    return t.number(significant(value, 6 if of_precise else 2 if column.isdecimal() or column in ROUGH else 3))
+    if any(cell(other, column).get("u") for other in rows):
+        return t.number(significant(value, 6))
+    return t.number(significant(value, 2 if column.isdecimal() or column in ROUGH else 3))
+
+
+def _mark(note: int) -> str:
+    """A letter: a figure above a number would be its power."""
+    return "abcdefghijklmnopqrstuvwxyz"[note % 26]

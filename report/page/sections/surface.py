@@ -6,8 +6,8 @@ from surface import grid_minimum, near, searched
 def content(c, previous, t) -> dict[str, object]:
     minimum, grid = grid_minimum(c), c.get("grid") or {}
     return {"drawn": bool(searched(c) or near(c)), "nodes": grid.get("nodes"),
-            "minimum": minimum and {"M": _node(minimum[0], t), "N": _node(minimum[1], t), "step": _node(grid["step"], t),
-                                    "S": t.number(significant(grid["S"], 3))}}
+            "minimum": minimum and {"M": _node(minimum[0], t), "N": _node(minimum[1], t),
+                                    "step": _node(grid["step"], t), "S": t.number(significant(grid["S"], 3))}}
 
 
 def _node(number: float, t) -> str:
