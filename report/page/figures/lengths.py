@@ -7,6 +7,7 @@ from calibration import Calibration
 from notation import count, length_unit, shortened
 
 MOST_ROWS = 30
+SEEN = 0.004  # of the largest error: a smaller u would be a hair
 
 
 def draw(c: Calibration, t) -> style.Figure | None:
@@ -19,7 +20,7 @@ def draw(c: Calibration, t) -> style.Figure | None:
     at = np.arange(len(rows))
     figure, axes = style.new_figure(0.85 + 0.2 * len(rows))
     axes.axvline(0, color=style.INK, lw=0.7, linestyle="-")
-    if np.isfinite(u).any():
+    if np.nanmax(u, initial=0) > SEEN * np.nanmax(np.abs([before, after]), initial=0):
         axes.barh(at, 4 * u, 0.6, -2 * u, color=style.FAINT, lw=0, zorder=0, label=t("figure.lengths.u"))
     axes.hlines(at, before, after, color=style.MUTED, lw=0.8, linestyles="-", zorder=1)
     axes.plot(before, at, "s", markerfacecolor="white", color=style.SECONDARY, linestyle="none",

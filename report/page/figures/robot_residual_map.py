@@ -3,6 +3,7 @@ import numpy as np
 
 import poses
 import style
+from bands import name_bands
 from calibration import Calibration
 from notation import count, length_unit, shortened
 
@@ -16,29 +17,24 @@ def draw(c: Calibration, t) -> style.Figure | None:
     if len(balls) < 2:
         return None
     starts = np.concatenate([[0], np.cumsum([len(each.poses) for each in found])])
-    size = np.full((len(balls), starts[-1]), np.nan)
-    for start, each in zip(starts, found):
-        rows = [balls.index(name) for name in each.ball_of]
-        size[rows, start + each.pose_of] = each.lengths
-    factor, unit = length_unit(float(np.nanmax(size)))
-    size = _largest_of(_largest_of(size, MOST_COLUMNS).T, MOST_BALLS).T
-    figure, axes = style.new_figure(1.1 + 0.2 * max(4, len(size)))
+    lengths, of_balls = _largest_of(_lengths(found, balls, starts).T, MOST_BALLS)
+    lengths, of_poses = _largest_of(lengths.T, MOST_COLUMNS)
+    factor, unit = length_unit(float(np.nanmax(lengths)))
+    figure, axes = style.new_figure(1.1 + 0.2 * max(4, len(lengths)))
     axes.set_facecolor(style.FAINT)
-    drawn = axes.imshow(factor * size, aspect="auto", interpolation="nearest", vmin=0,
-                        extent=(0, starts[-1], len(balls) - 0.5, -0.5))
-    step = -(-len(balls) // MOST_BALLS)
-    axes.set_yticks(range(0, len(balls), step), [shortened(name, 16) for name in balls[::step]])
+    drawn = axes.imshow(factor * lengths, aspect="auto", interpolation="nearest", vmin=0,
+                        extent=(0, of_poses * lengths.shape[1], len(lengths) - 0.5, -0.5))
+    axes.set_xlim(0, starts[-1])
+    axes.set_yticks(range(len(lengths)), [shortened(name, 16) for name in balls[::of_balls]])
     axes.set_ylabel(t("figure.robot_residual_map.ball"))
     axes.spines[:].set_visible(False)
     axes.tick_params(length=0)
-    if len(found) <= MOST_NAMED:
-        axes.set_xticks((starts[:-1] + starts[1:]) / 2,
-                        [shortened(each.name, 84 // len(found)) for each in found])
-        axes.vlines(starts[1:-1], -0.5, len(balls) - 0.5, color="white", lw=1.2, linestyles="-")
-        axes.set_xlabel(t("figure.robot_residual_map.station"))
-    else:
-        axes.set_xlabel(t("figure.robot_residual_map.pose"))
+    few = len(found) <= MOST_NAMED
+    axes.set_xlabel(t("figure.robot_residual_map.station" if few else "figure.robot_residual_map.pose"))
     figure.colorbar(drawn, ax=axes, label=t("figure.robot_residual_map.size", unit=unit), pad=0.01)
+    if few:
+        axes.vlines(starts[1:-1], -0.5, len(lengths) - 0.5, color="white", lw=1.2, linestyles="-")
+        name_bands(axes, starts, [each.name for each in found])
     return figure
 
 
@@ -46,6 +42,14 @@ def caption(c: Calibration, t) -> dict[str, str]:
     columns = sum(len(each.poses) for each in poses.stations(c) if len(each.residuals))
     folded = columns > MOST_COLUMNS or len(_balls(c)) > MOST_BALLS
     return {"notes": t("figure.robot_residual_map.folded", poses=count(columns)) if folded else ""}
+
+
+def _lengths(found: list[poses.Station], balls: list[str], starts: np.ndarray) -> np.ndarray:
+    """Of the residuals, balls x poses; nan where a pose did not see a ball."""
+    lengths = np.full((len(balls), starts[-1]), np.nan)
+    for start, each in zip(starts, found):
+        lengths[[balls.index(name) for name in each.ball_of], start + each.pose_of] = each.lengths
+    return lengths
 
 
 def _balls(c: Calibration) -> list[str]:
@@ -59,10 +63,10 @@ def _balls(c: Calibration) -> list[str]:
     return sorted(names, key=lambda name: (known.get(name, len(known)), len(name), name))
 
 
-def _largest_of(size: np.ndarray, most: int) -> np.ndarray:
-    """Columns folded into at most so many, nan where all of them are."""
-    if size.shape[1] <= most:
-        return size
-    pieces = np.array_split(np.nan_to_num(size, nan=-1), most, axis=1)
-    folded = np.stack([piece.max(axis=1) for piece in pieces], axis=1)
-    return np.where(folded < 0, np.nan, folded)
+def _largest_of(size: np.ndarray, most: int) -> tuple[np.ndarray, int]:
+    """Columns folded into at most so many, each of equally many, nan where all of them are; and how many those are."""
+    step = -(-size.shape[1] // most)
+    padding = np.full((len(size), -size.shape[1] % step), np.nan)
+    pieces = np.nan_to_num(np.hstack([size, padding]), nan=-1).reshape(len(size), -1, step)
+    folded = pieces.max(axis=2)
+    return np.where(folded < 0, np.nan, folded), step

@@ -3,6 +3,7 @@ import numpy as np
 
 import poses
 import style
+from bands import name_bands
 from calibration import Calibration
 from labels import place_labels
 from notation import count, length_unit, shortened, significant
@@ -24,7 +25,7 @@ def draw(c: Calibration, t) -> style.Figure | None:
     residuals = factor * np.vstack([each.residuals for each in drawn])
     many = len(at) > MANY_DOTS
     for axes, name, of_axis in zip(panels, AXES, residuals.T):
-        for k in range(0, len(drawn), 2):
+        for k in range(1, len(drawn), 2):
             axes.axvspan(starts[k] - 0.5, starts[k + 1] - 0.5, color=style.FAINT, alpha=0.45, lw=0)
         axes.axhline(0, color=style.INK, lw=0.7, linestyle="-")
         band = 2 * np.sqrt(np.mean(of_axis**2))
@@ -36,11 +37,10 @@ def draw(c: Calibration, t) -> style.Figure | None:
     panels[0].set_xlim(-0.5, starts[-1] - 0.5)
     for axes in panels:
         axes.tick_params(axis="x", length=0)
-    middles = (starts[:-1] + starts[1:] - 1) / 2
-    panels[-1].set_xticks(middles, [shortened(each.name, 100 // len(drawn)) for each in drawn])
     panels[-1].set_xlabel(t(f"figure.robot_residuals.{_kind(c)}"))
     limit = 1.12 * np.abs(residuals).max() or 1.0
     panels[0].set_ylim(-limit, limit)
+    name_bands(panels[-1], starts - 0.5, [each.name for each in drawn])
     _name_worst(panels, drawn, at, residuals, _kind(c), t)
     return figure
 

@@ -2,34 +2,48 @@
 import functools
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-SOURCE = Path(__file__).resolve().parents[3]
+import paths
+from paths import SOURCE
+
 PROGRAM = os.environ.get("SCANCAL_PROGRAM", str(SOURCE / "build" / "scancal"))
 EVIL = '"><script>window.ran = 1</script><img src=x onerror="window.ran = 1"> Prüfkörper \'€ $a_b$\' {{ 7 * 7 }} жук '
 LONG = (EVIL + "very long " * 30)[:300]
+
+PANDA = paths.DATA_SETS / "mukca-panda"
+SCENES = ["sample", "robot", "bad", "many_targets", "many_stations", "named", "named_robot"]
+if PANDA.exists():
+    SCENES.append("flange")
+else:
+    print(f"NO DATA: {PANDA} is not there; the page of a ball on a flange was not looked at", file=sys.stderr)
 
 _folder = tempfile.TemporaryDirectory(prefix="scancal_page_")
 
 
 @functools.cache
 def calibration(scene: str) -> Path:
-    """calibration.json of a scene: sample, robot; bad is one on which nobody should rely."""
+    """calibration.json of a scene; on "bad" nobody should rely: its U is larger than the searched box."""
     out = folder() / scene
     if scene == "sample":
         _run("refine", SOURCE / "data/sample", f"--out={out}", "--montecarlo=200")
     elif scene == "robot":
         _run("refine", SOURCE / "data/robot-sample", f"--out={out}")
     elif scene == "bad":
-        _run("simulate", f"--out={out / 'data'}", "--placements=1", "--tilt_x=1", "--sweep=4", "--profiles=12",
-             "--points=9")
-        _run("refine", out / "data", f"--out={out}", allowed=2)
+        _simulated(out, "--placements=1", "--tilt_x=1", "--sweep=4", "--profiles=12", "--points=9", allowed=2)
+    elif scene == "many_targets":
+        _simulated(out, "--placements=40", "--profiles=16", "--points=16")
+    elif scene == "many_stations":
+        _simulated(out, "--model=robot-ball", "--declare", "--stations=60", "--poses=5")
+    elif scene == "flange":
+        _run("refine", _panda(out), f"--out={out}")
     elif scene == "named":
         _rename(calibration("sample"), out)
-    else:
+    elif scene == "named_robot":
         _rename(calibration("robot"), out)
     return out / "calibration.json"
 
@@ -82,18 +96,37 @@ def _run(*arguments, allowed: int = 0) -> None:
         raise AssertionError(f"{PROGRAM} {arguments[0]}: {done.returncode}: {done.stderr}")
 
 
-def _rename(file: Path, out: Path) -> None:
-    """The same calibration with names that try to break out of the page; targets stay apart by a number."""
-    found = json.loads(file.read_text(encoding="utf-8"))
-    names = {target["name"]: f"{k} {LONG}"[:300] for k, target in enumerate(found["targets"])}
-    names |= {found["name"]: LONG} | {source["file"]: f"{k} {LONG}"[:300] for k, source in enumerate(found["inputs"])}
+def _simulated(out: Path, *arguments: str, allowed: int = 0) -> None:
+    _run("simulate", f"--out={out / 'data'}", *arguments)
+    _run("refine", out / "data", f"--out={out}", allowed=allowed)
+
+
+def _panda(out: Path) -> Path:
+    """A data set as tests/real has it, with its data beside it."""
     out.mkdir()
-    (out / "calibration.json").write_text(json.dumps(_with_names(found, names)), encoding="utf-8")
+    (out / "mukca-panda").symlink_to(PANDA)
+    return shutil.copy(SOURCE / "tests/real/mukca-panda/panda_2.yaml", out)
 
 
-def _with_names(value, names: dict[str, str]):
-    if isinstance(value, dict):
-        return {names.get(key, key): _with_names(inner, names) for key, inner in value.items()}
-    if isinstance(value, list):
-        return [_with_names(inner, names) for inner in value]
-    return names.get(value, value) if isinstance(value, str) else value
+def _rename(file: Path, out: Path) -> None:
+    """The same calibration with names that try to break out of the page, each beginning with a number of its own."""
+    found = json.loads(file.read_text(encoding="utf-8"))
+    found["name"] = LONG
+    names = {target["name"]: _long(k) for k, target in enumerate(found["targets"])}
+    known = [(each, "name") for where in (found, found["residuals"], found.get("scene") or {})
+             for each in where.get("targets") or []] + [(each, "without") for each in found["jackknife"]]
+    for each, key in known:
+        each[key] = names[each[key]]
+    for k, source in enumerate(found["inputs"]):
+        source["file"] = _long(k)
+    lists = [found.get("check") or {}] + [target[table] for target in found["residuals"]["targets"]
+                                          for table in ("poses", "balls") if table in target]
+    for each in lists:
+        different = {name: _long(k) for k, name in enumerate(dict.fromkeys(each.get("names") or []))}
+        each["names"] = [different[name] for name in each.get("names") or []]
+    out.mkdir()
+    (out / "calibration.json").write_text(json.dumps(found), encoding="utf-8")
+
+
+def _long(number: int) -> str:
+    return f"{number} {LONG}"[:300]

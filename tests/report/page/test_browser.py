@@ -10,8 +10,17 @@ import browser
 import pages
 from printed import Printed
 
-SCENES = ["sample", "robot", "bad", "named", "named_robot"]
 WIDTHS = [1280, 390]
+OF_ALL = ["budget", "correlation", "scene"]
+OF_SCANS = ["comparison", "residual_map", "residual_sweep", "residual_line", "residual_histogram", "surface_contour",
+            "surface_3d", "volume"]
+OF_ROBOTS = ["links", "robot_residuals", "joints", "workspace", "lengths"]
+FIGURES = {"sample": OF_ALL + OF_SCANS + ["leave_one_out", "monte_carlo"], "bad": OF_ALL + OF_SCANS,
+           "many_targets": OF_ALL + OF_SCANS + ["leave_one_out"],
+           "robot": OF_ALL + OF_ROBOTS + ["robot_residual_map", "leave_one_out", "comparison"],
+           "many_stations": OF_ALL + OF_ROBOTS + ["robot_residual_map", "leave_one_out", "comparison"],
+           "flange": OF_ALL + OF_ROBOTS + ["comparison"]}
+FIGURES |= {"named": FIGURES["sample"], "named_robot": FIGURES["robot"]}
 
 
 @unittest.skipUnless(os.path.exists(browser.CHROMIUM) and os.path.exists(browser.DRIVER),
@@ -25,14 +34,13 @@ class InBrowser(unittest.TestCase):
     def tearDownClass(cls):
         cls.browser.close()
 
-    def each(self, check, widths=WIDTHS):
-        """Every page in every language at every width."""
-        for scene in SCENES:
+    def each_page(self, widths=WIDTHS):
+        """Opens every page in every language at every width; a test that goes on with the next at a complaint."""
+        for scene in pages.SCENES:
             for language in ["en", "de"]:
                 for width in widths:
-                    with self.subTest(scene=scene, language=language, width=width):
-                        self.browser.open(pages.page(scene, language), width)
-                        check()
+                    self.browser.open(pages.page(scene, language), width)
+                    yield f"{scene}, {language}, {width} px", scene
 
     def open_changed(self, change, width: int = 1280, scene: str = "sample") -> Path:
         page = pages.changed(pages.page(scene), change)
@@ -49,11 +57,19 @@ def in_first_figure(piece: str):
 
 
 class PageTest(InBrowser):
-    def test_nothing_is_loaded_and_nothing_fails(self):
-        def check():
-            self.assertEqual(self.browser.requests(), [])
-            self.assertEqual(self.browser.errors(), [])
-        self.each(check, widths=[1280])
+    def test_every_page_is_sound(self):
+        for what, scene in self.each_page():
+            for found in ["requests", "errors", "active_content", "texts_outside", "texts_on_texts"]:
+                with self.subTest(what, of=found):
+                    self.assertEqual(getattr(self.browser, found)(), [])
+            with self.subTest(what, of="width"):
+                self.assertEqual(self.browser.too_wide(), 0)
+            with self.subTest(what, of="figures"):
+                self.assertEqual(sorted(self.browser.figures()), sorted(f"figure-{name}" for name in FIGURES[scene]))
+
+    def test_every_figure_is_on_a_page(self):
+        drawn = {file.stem for file in (pages.SOURCE / "report/page/figures").glob("[!_]*.py")}
+        self.assertEqual({name for names in FIGURES.values() for name in names}, drawn)
 
     def test_requests_and_errors_are_seen(self):
         image = before_the_end('<img src="https://example.invalid/x.png">')
@@ -87,21 +103,10 @@ class PageTest(InBrowser):
         self.assertIn("a name ran", found)
         self.assertRegex(str(found), "IMG onerror")
 
-    def test_the_page_is_as_wide_as_the_window(self):
-        def check():
-            self.assertEqual(self.browser.too_wide(), 0)
-        self.each(check)
-
     def test_a_wide_page_is_seen(self):
         for width in WIDTHS:
             self.open_changed(before_the_end('<div style="width: 2000px">wide</div>'), width)
             self.assertGreater(self.browser.too_wide(), 600)
-
-    def test_figures_keep_their_texts_apart_and_inside(self):
-        def check():
-            self.assertEqual(self.browser.texts_outside(), [])
-            self.assertEqual(self.browser.texts_on_texts(), [])
-        self.each(check)
 
     def test_texts_outside_and_on_each_other_are_seen(self):
         self.open_changed(in_first_figure('<text x="-20" y="20">outside</text>'))
@@ -127,14 +132,14 @@ class BrowserPrintTest(InBrowser):
         return Printed(file)
 
     def test_prints_whole_figures_and_tables(self):
-        def check():
+        for what, _ in self.each_page(widths=[1280]):
             printed = self.printed()
-            self.assertEqual(self.browser.too_wide_for_a_sheet(), 0)
-            self.assertEqual(printed.wrong_sheets(), [])
-            self.assertEqual(printed.lost(self.browser), [])
-            self.assertEqual(printed.cut_figures(self.browser), [])
-            self.assertEqual(printed.cut_rows(self.browser), [])
-        self.each(check, widths=[1280])
+            for found in [printed.wrong_sheets(), printed.lost(self.browser), printed.cut_figures(self.browser),
+                          printed.cut_rows(self.browser)]:
+                with self.subTest(what):
+                    self.assertEqual(found, [])
+            with self.subTest(what, of="width"):
+                self.assertEqual(self.browser.too_wide_for_a_sheet(), 0)
 
     def test_what_is_cut_is_seen(self):
         self.open_changed(lambda html: html.replace("size: A4;", "size: A5;").replace("counter(pages)", "1"))

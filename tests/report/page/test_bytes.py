@@ -9,7 +9,6 @@ from xml.etree import ElementTree
 
 import pages
 
-SCENES = ["sample", "robot", "bad", "named", "named_robot"]
 MOST_BYTES = 3_000_000
 
 
@@ -57,7 +56,7 @@ class BytesTest(unittest.TestCase):
             self.assertEqual(*files)
 
     def test_pictures_are_whole(self):
-        for scene in SCENES:
+        for scene in pages.SCENES:
             html = pages.page(scene).read_text(encoding="utf-8")
             self.assertEqual(broken_svgs(html), [])
             self.assertEqual(broken_images(html), [])

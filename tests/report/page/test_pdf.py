@@ -22,7 +22,7 @@ def pdf_of(scene: str, name: str = "", **environment) -> Path:
 
 class PdfTest(InBrowser):
     def test_prints_whole_figures_and_tables(self):
-        for scene in ["sample", "robot", "bad", "named"]:
+        for scene in ["sample", "robot", "bad", "named", "many_stations"]:
             self.browser.open(pages.page(scene))
             printed = Printed(pdf_of(scene))
             self.assertEqual(printed.wrong_sheets(), [])

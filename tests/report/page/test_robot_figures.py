@@ -117,12 +117,13 @@ class ResidualsTest(unittest.TestCase):
         self.assertLess(len(drawn("robot_residual_map", c)), 60_000)
 
     def test_folding_keeps_the_longest(self):
-        size = np.full((3, 1000), np.nan)
-        size[1, 500] = 7.0
-        folded = robot_residual_map._largest_of(size, 100)
-        self.assertEqual(folded.shape, (3, 100))
-        self.assertEqual(np.nanmax(folded), 7.0)
+        size = np.full((3, 306), np.nan)
+        size[1, 203] = 7.0
+        folded, each = robot_residual_map._largest_of(size, 240)
+        self.assertEqual((folded.shape, each), ((3, 153), 2))  # evenly: the axis counts poses
+        self.assertEqual(folded[1, 101], 7.0)
         self.assertEqual(np.isfinite(folded).sum(), 1)
+        self.assertEqual(robot_residual_map._largest_of(size, 400)[1], 1)
 
     def test_a_row_of_the_map_for_every_ball_in_the_order_of_the_artifact(self):
         c = robot([station("s1", 3, ["b2", "b1", "b10"])])
