@@ -56,8 +56,10 @@ TEST(HelpTest, VersionIsOneLine) {
 }
 
 TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
-  EXPECT_THAT(HelpFlags("refine"), ElementsAre("out", "residual", "weights", "max_iterations", "montecarlo"));
-  EXPECT_THAT(HelpFlags("montecarlo"), ElementsAre("out", "trials", "seed", "digits", "threads"));
+  EXPECT_THAT(HelpFlags("refine"),
+              ElementsAre("out", "report", "language", "residual", "weights", "max_iterations", "montecarlo"));
+  EXPECT_THAT(HelpFlags("montecarlo"), ElementsAre("out", "report", "language", "trials", "seed", "digits", "threads"));
+  EXPECT_THAT(HelpFlags("report"), ElementsAre("out", "pdf", "dcc", "previous", "language"));
   EXPECT_THAT(HelpFlags("compare"), ElementsAre("surface"));
   EXPECT_THAT(HelpFlags("selftest"), ElementsAre("nist"));
   EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out"));
