@@ -70,14 +70,18 @@ class Calibration(dict):
 
     @property
     def covariance(self) -> np.ndarray:
-        """n x n, of the estimated parameters; mm and rad."""
-        n = len(self.estimated)
-        return np.array(self.get("covariance", []), dtype=float).reshape(n, n)
+        """n x n, of the estimated parameters; mm and rad. What is not known is nan."""
+        return self._square("covariance")
 
     @property
     def correlation(self) -> np.ndarray:
-        n = len(self.estimated)
-        return np.array(self.get("correlation", []), dtype=float).reshape(n, n)
+        return self._square("correlation")
+
+    def _square(self, key: str) -> np.ndarray:
+        n, rows = len(self.estimated), self.get(key) or []
+        if [len(row) for row in rows] != [n] * n:
+            return np.full((n, n), np.nan)
+        return np.array(rows, dtype=float).reshape(n, n)
 
     def table(self, *path: str) -> Table:
         """The table at that path of keys; empty if this calibration has none."""

@@ -14,9 +14,10 @@ _OWN = 6         # points around what is named, where its tie may lie on what is
 
 
 def place_labels(axes, points, names: list[str], obstacles=(), directions=None, looks=()) -> list[int]:
-    """Writes each name beside its point (data coordinates), the first one first, and returns which found room; the
-    others are left out. obstacles: (x, y) that no name may hide. directions: degrees, where each name should lie if it
-    can; looks: of each text. The figure must have everything that takes part in its layout: names do not change it."""
+    """Writes each name beside its point (data coordinates), the first one first, and returns which found
+    room; the others are left out. obstacles: (x, y) that no name may hide. directions: degrees, where each name
+    should lie if it can; looks: of each text. The figure must have everything that takes part in its layout:
+    names do not change it."""
     axes.figure.draw_without_rendering()
     points = np.array(points, dtype=float).reshape(-1, 2)
     drawn = np.vstack([points, np.array(obstacles, dtype=float).reshape(-1, 2)])
@@ -26,15 +27,16 @@ def place_labels(axes, points, names: list[str], obstacles=(), directions=None, 
         text = axes.annotate(name, points[k], (0, 0), textcoords="offset points", ha="center", va="center",
                              annotation_clip=False, **{"fontsize": 8} | (looks[k] if looks else {}))
         text.set_in_layout(False)
-        place = sheet.place(points[k], text, [] if directions is None or directions[k] is None else [directions[k]])
+        place = sheet.place(points[k], text, [] if directions is None else [directions[k]])
         if place is None:
             text.remove()
             continue
         text.set_position(place.centre)
         if place.is_tied:
             line = {"arrowstyle": "-", "color": style.MUTED, "lw": 0.5, "shrinkA": 0, "shrinkB": 2}
-            axes.annotate("", points[k], place.tie, textcoords="offset points", annotation_clip=False, zorder=1,
-                          arrowprops=line).set_in_layout(False)
+            tie = axes.annotate("", points[k], place.tie, textcoords="offset points", annotation_clip=False,
+                                zorder=1, arrowprops=line)
+            tie.set_in_layout(False)
         placed.append(k)
     return placed
 
@@ -80,7 +82,8 @@ class _Sheet:
         places = [_Place(distance, direction, half) for distance in _DISTANCES
                   for direction in [*wished, *_DIRECTIONS]]
         free = [place for place in places if self._is_free(place, at)]
-        found = next((place for place in free if not self._crosses(place.line(at), at)), free[0] if free else None)
+        clear = (place for place in free if not self._crosses(place.line(at), at))
+        found = next(clear, free[0] if free else None)
         if found is not None:
             self._names.append(found.box(at))
             self._ties = np.vstack([self._ties, found.line(at)])

@@ -8,7 +8,7 @@ from calibration import Calibration, Table
 
 @dataclass(frozen=True)
 class Standing:
-    """One target: outline n x 3 (corners of a plate, balls of an artifact), eyes and points seen m x 3; mm."""
+    """One target: outline n x 3 (around a plate, or balls of an artifact), eyes and points seen m x 3; mm."""
     name: str
     outline: np.ndarray
     eyes: np.ndarray
@@ -27,8 +27,9 @@ class Standing:
 
 def standings(c: Calibration) -> list[Standing]:
     """Targets of which anything is known."""
-    found = [Standing(each.get("name", ""), _points(each.get("outline"), ""), _points(each.get("views"), "from_"),
-                      _points(each.get("views"), "to_")) for each in (c.get("scene") or {}).get("targets") or []]
+    targets = (c.get("scene") or {}).get("targets") or []
+    found = [Standing(each.get("name", ""), _points(each.get("outline"), ""),
+                      _points(each.get("views"), "from_"), _points(each.get("views"), "to_")) for each in targets]
     return [each for each in found if len(each.outline) + len(each.eyes) and np.isfinite(each.middle).all()]
 
 
@@ -48,12 +49,13 @@ def from_front(points: np.ndarray) -> np.ndarray:
 def closed(corners: np.ndarray, pieces: int = 40) -> np.ndarray:
     """The line around a plate, in pieces: seen beside an axis its edges are bent."""
     share = np.linspace(0, 1, pieces, endpoint=False)[:, None]
-    return np.vstack([a + share * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0))] + [corners[:1]])
+    sides = [a + share * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0))]
+    return np.vstack(sides + [corners[:1]])
 
 
 def thinned(number: int, most: int) -> np.ndarray:
     """Indices, first and last among them."""
-    return np.unique(np.linspace(0, number - 1, min(number, most)).round().astype(int)) if number else np.array([], int)
+    return np.unique(np.linspace(0, max(0, number - 1), min(number, most)).round().astype(int))
 
 
 def _points(json_table: dict | None, prefix: str) -> np.ndarray:

@@ -24,7 +24,7 @@ def student_t_density(t: np.ndarray, dof: float) -> np.ndarray:
 
 
 def gum_density(x: np.ndarray, parameter: dict) -> np.ndarray:
-    """What value, u and dof of a parameter say of it (JCGM 101, 6.4.9.2); x in its unit."""
+    """What value, u and dof of a parameter say of it (JCGM 101, 6.4.9.7); x in its unit."""
     u = known(parameter.get("u"))
     dof = math.inf if parameter.get("dof") is None else parameter["dof"]  # JSON has no infinity
     return student_t_density((x - parameter["value"]) / u, dof) / u
@@ -36,8 +36,8 @@ def axis_unit(parameter: dict) -> tuple[float, str]:
 
 
 def moves(c: Calibration) -> tuple[list[str], np.ndarray]:
-    """Leaving one target out: names of the targets, and by how much every estimated parameter moves without each."""
-    rows = [[known(without["value"].get(p["name"])) - known(p.get("value")) for p in c.estimated]
+    """Leaving one target out: names of the targets, and by how much each parameter moves without each."""
+    rows = [[known((without.get("value") or {}).get(p["name"])) - known(p.get("value")) for p in c.estimated]
             for without in c.get("jackknife") or []]
     names = [without["without"] for without in c.get("jackknife") or []]
     return names, np.array(rows, dtype=float).reshape(len(names), len(c.estimated))
@@ -70,8 +70,8 @@ def strongest_pairs(c: Calibration, most: int) -> list[tuple[str, str, float]]:
 
 
 def weakest_direction(c: Calibration) -> list[tuple[str, float]]:
-    """The parameters that take part in it, largest first, the largest positive; as a unit vector of quantities that are
-    scaled to move the residuals alike."""
+    """The parameters that take part in it, largest first, the largest positive; as a unit vector of quantities
+    that are scaled to move the residuals alike."""
     parts = [(name, known(component)) for name, component in (c.get("weakest") or {}).items()]
     parts = sorted((part for part in parts if math.isfinite(part[1])), key=lambda part: -abs(part[1]))
     if not parts or parts[0][1] == 0:
@@ -83,5 +83,6 @@ def weakest_direction(c: Calibration) -> list[tuple[str, float]]:
 
 def apart_in_u(trials: dict) -> float:
     """How far the ends of the two 95 % intervals of a parameter lie from each other, in u of the trials."""
-    ends = [abs(known(trials.get(a)) - known(trials.get(b))) for a, b in (("low", "gum_low"), ("high", "gum_high"))]
-    return max(ends) / known(trials.get("u")) if known(trials.get("u")) > 0 else math.nan
+    keys = ("low", "high", "gum_low", "gum_high", "u")
+    low, high, gum_low, gum_high, u = (known(trials.get(key)) for key in keys)
+    return max(abs(low - gum_low), abs(high - gum_high)) / u if u > 0 else math.nan

@@ -6,6 +6,7 @@ import numpy as np
 from calibration import Calibration
 from notation import significant
 
+EVEN = 1.05  # largest over least: a step or so of the second digit
 READING = ("alpha", "y", "z")
 
 
@@ -28,8 +29,8 @@ class Volume:
 
     @property
     def is_even(self) -> bool:
-        """To the two digits that anybody would write."""
-        return significant(self.least) == significant(self.largest)
+        """As good as the same throughout: a picture of it would be one of nothing."""
+        return self.largest <= EVEN * self.least
 
     def where(self, value: float) -> dict[str, float]:
         """The first reading with this U, and the point that it says."""
@@ -47,7 +48,8 @@ class Volume:
         """Nodes of that: lowest, middle, highest; one where U is the same in all, to two digits."""
         maps = np.moveaxis(self.U, self.sliced, 0)
         middle = len(maps) // 2
-        same = all(significant(a) == significant(b) for each in maps for a, b in zip(each.ravel(), maps[middle].ravel()))
+        same = all(significant(a) == significant(b)
+                   for each in maps for a, b in zip(each.ravel(), maps[middle].ravel()))
         return [middle] if same else sorted({0, middle, len(maps) - 1})
 
 

@@ -1,5 +1,5 @@
-"""Shares of the variance of each parameter: for few parameters one bar a source, largest first; for many a bar each, in
-pieces."""
+"""Shares of the variance of each parameter: for few parameters a bar for each source, largest first; for many
+a bar for each parameter, in pieces."""
 import numpy as np
 
 import style
@@ -8,9 +8,9 @@ from notation import shortened, significant
 from uncertainty import axis_unit, known, shares, sources_by_share
 
 FEW_PARAMETERS, MOST_BARS = 4, 40
-MOST_SOURCES, MOST_PIECES = 12, 5
+MOST_SOURCES, MOST_PIECES = 12, 5  # the smaller ones as one
 NO_PIECE = 0.005  # a share that could not be seen
-HATCHES = ["", "////", "\\\\\\\\", "----", "xxxx", "||||", "++++"]
+HATCHES = ["", "////", "\\\\\\\\", "----", "xxxx", "||||"]
 
 
 def draw(c: Calibration, t) -> style.Figure | None:
@@ -22,9 +22,9 @@ def draw(c: Calibration, t) -> style.Figure | None:
 def caption(c: Calibration, t) -> dict[str, str]:
     few = len(c.estimated) <= FEW_PARAMETERS
     how = t("figure.budget.by_source" if few else "figure.budget.by_parameter")
-    left_out = max(0, len(c.estimated) - MOST_BARS)
-    return {"how": how,
-            "left_out": " " + t("figure.budget.left_out", shown=MOST_BARS, left_out=left_out) if left_out else ""}
+    rest = len(c.estimated) - MOST_BARS
+    left_out = " " + t("figure.budget.left_out", shown=MOST_BARS, left_out=rest) if rest > 0 else ""
+    return {"how": how, "left_out": left_out}
 
 
 def table_of_shares(c: Calibration, t, most: int, least: float) -> list[tuple[str, str, list[float]]]:
@@ -35,7 +35,8 @@ def table_of_shares(c: Calibration, t, most: int, least: float) -> list[tuple[st
     if len(rest) == 1:
         keep, rest = lines, []
     if rest:
-        keep.append((t("budget.others", number=len(rest)), "", list(np.sum([line[2] for line in rest], axis=0))))
+        together = np.sum([line[2] for line in rest], axis=0)
+        keep.append((t("budget.others", number=len(rest)), "", list(together)))
     return keep
 
 
@@ -52,8 +53,8 @@ def _by_source(c: Calibration, t) -> style.Figure:
             panel.annotate(t.number(f"{100 * of[k]:.1f}") + " %", (100 * of[k], row), (4, 0),
                            textcoords="offset points", va="center", fontsize=8)
         factor, unit = axis_unit(parameter)
-        panel.set_title(f"u({shortened(parameter['name'])}) = {t.number(significant(factor * known(parameter.get('u'))))} "
-                        f"{unit}")
+        u = t.number(significant(factor * known(parameter.get("u"))))
+        panel.set_title(f"u({shortened(parameter['name'])}) = {u} {unit}")
         panel.set_xlim(0, 100 / (1 - min(0.6, label_inches / panel_inches)))
         panel.set_xticks([0, 50, 100])
         panel.spines["bottom"].set_bounds(0, 100)
@@ -73,10 +74,13 @@ def _by_parameter(c: Calibration, t) -> style.Figure:
     for k, (source, kind, of) in enumerate(pieces):
         lightness = k / max(1, len(pieces) - 1)
         width = 100 * np.array(of[:len(parameters)])
-        axes.barh(range(len(parameters)), width, 0.7, left, hatch=HATCHES[k % len(HATCHES)], linewidth=0.4,
-                  color=style.matplotlib.colormaps[style.MAP](0.1 + 0.85 * lightness),
-                  edgecolor="white" if lightness < 0.5 else style.INK,
-                  label=f"{shortened(source)} ({kind})" if kind else source)
+        if kind:
+            looks = {"color": style.matplotlib.colormaps[style.MAP](0.1 + 0.85 * lightness),
+                     "edgecolor": "white" if lightness < 0.5 else style.INK, "hatch": HATCHES[k]}
+        else:  # the others
+            looks = {"color": "white", "edgecolor": style.INK}
+        label = f"{shortened(source)} ({kind})" if kind else source
+        axes.barh(range(len(parameters)), width, 0.7, left, linewidth=0.4, label=label, **looks)
         left += width
     axes.set_yticks(range(len(parameters)), [shortened(parameter["name"]) for parameter in parameters])
     axes.set_ylim(len(parameters) - 0.5, -0.5)

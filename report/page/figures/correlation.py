@@ -1,17 +1,17 @@
-"""Correlation of the estimated parameters: the area of a disc is its size; a full one is positive, a ring negative."""
+"""Correlation of the estimated parameters: the area of a disc is its size, a ring is negative."""
 import math
 
 import numpy as np
 
 import style
 from calibration import Calibration
-from notation import shortened, significant
+from notation import MINUS, shortened
 from uncertainty import strongest_pairs
 
 WORDS_UP_TO = 2      # parameters: one number is a sentence
 NUMBERS_UP_TO = 10   # parameters: beyond, the numbers would not be read
 CELL = 0.36          # inches, at most
-BESIDE = 3.7         # inches of a matrix that leaves room for the pairs at its right; else they stand in its empty half
+BESIDE = 3.7         # inches of a matrix with the pairs at its right; a larger one has them in its empty half
 MOST_PAIRS, ROW = 10, 0.2
 LETTER = 0.068       # inches, at 8 points
 LEVELS = 25          # of area: the eye parts fewer
@@ -26,7 +26,7 @@ def draw(c: Calibration, t) -> style.Figure | None:
     size = min(style.WIDTH - margin - 0.1, CELL * len(names))
     height = size + margin + TOP
     figure = style.pyplot.figure(figsize=(style.WIDTH, height), layout="none")
-    _matrix(_axes(figure, margin, margin, size, size), names, c.correlation, min(8.0, 60 * size / len(names)), t)
+    _matrix(_axes(figure, margin, margin, size, size), names, c.correlation, t)
     pairs = strongest_pairs(c, MOST_PAIRS if size > BESIDE else max(3, int(size / ROW)))
     tall = ROW * len(pairs)
     words = 0.1 + LETTER * max(len(_pair(pair)) for pair in pairs)
@@ -41,27 +41,27 @@ def _axes(figure, left: float, bottom: float, width: float, height: float):
     return figure.add_axes([left / wide, bottom / high, width / wide, height / high])
 
 
-def _matrix(axes, names: list[str], correlation: np.ndarray, fontsize: float, t) -> None:
+def _matrix(axes, names: list[str], correlation: np.ndarray, t) -> None:
     n = len(names)
     cell_points = 72 * axes.get_position().width * style.WIDTH / n
     row, column = np.tril_indices(n)
     r = correlation[row, column]
-    level = np.round(LEVELS * np.abs(r)).astype(int)
+    level = np.round(LEVELS * np.minimum(np.abs(r), 1)).astype(int)
+    disc, ring = (_looks(sign) for sign in (1, -1))
     for k in range(1, LEVELS + 1):
-        for of_sign, looks in ((r > 0, {"color": style.PRIMARY, "markeredgewidth": 0}),
-                               (r < 0, {"color": "white", "markeredgecolor": style.SECONDARY, "markeredgewidth": 1})):
+        for of_sign, looks in ((r > 0, disc), (r < 0, ring)):
             here = of_sign & (level == k)
             if here.any():
-                axes.plot(column[here], row[here], "o", linestyle="none", **looks,
-                          markersize=0.9 * cell_points * math.sqrt(k / LEVELS) - (1 if looks["color"] == "white" else 0))
+                across = 0.9 * cell_points * math.sqrt(k / LEVELS) - looks["markeredgewidth"]
+                axes.plot(column[here], row[here], "o", linestyle="none", markersize=across, **looks)
     for i, j in zip(row, column) if n <= NUMBERS_UP_TO else ():
         if i != j:
-            axes.text(i, j, t.number(significant(correlation[i, j])), ha="center", va="center", fontsize=8)
+            axes.text(i, j, t.number(_number(correlation[i, j])), ha="center", va="center", fontsize=8)
     _grid(axes, n, whole=n <= NUMBERS_UP_TO)
     axes.set_xlim(-0.5, n - 0.5)
     axes.set_ylim(n - 0.5, -0.5)
-    axes.set_xticks(range(n), names, rotation=90, fontsize=fontsize)
-    axes.set_yticks(range(n), names, fontsize=fontsize)
+    axes.set_xticks(range(n), names, rotation=90, fontsize=min(8.0, 0.83 * cell_points))
+    axes.set_yticks(range(n), names, fontsize=min(8.0, 0.83 * cell_points))
     axes.spines[:].set_visible(False)
     axes.tick_params(length=0)
 
@@ -75,6 +75,16 @@ def _grid(axes, n: int, whole: bool) -> None:
     axes.vlines(edges, starts, to, color=style.FAINT, lw=0.6, zorder=0)
 
 
+def _looks(sign: float) -> dict:
+    if sign > 0:
+        return {"color": style.PRIMARY, "markeredgewidth": 0}
+    return {"color": "white", "markeredgecolor": style.SECONDARY, "markeredgewidth": 1}
+
+
+def _number(r: float) -> str:
+    return f"{round(r, 2) + 0.0:.2f}".replace("-", MINUS)
+
+
 def _pair(pair: tuple[str, str, float]) -> str:
     return f"{shortened(pair[0], 14)}, {shortened(pair[1], 14)}"
 
@@ -82,10 +92,9 @@ def _pair(pair: tuple[str, str, float]) -> str:
 def _pairs(axes, pairs: list[tuple[str, str, float]], t) -> None:
     for row, (_, _, r) in enumerate(pairs):
         axes.plot([0, r], [row, row], "-", color=style.MUTED, lw=1)
-        axes.plot(r, row, "o", markersize=7, clip_on=False, color=style.PRIMARY if r > 0 else "white",
-                  markeredgecolor=style.PRIMARY if r > 0 else style.SECONDARY)
-        axes.annotate(t.number(significant(r)), (1, row), (32, 0), textcoords="offset points", ha="right", va="center",
-                      fontsize=8, annotation_clip=False)
+        axes.plot(r, row, "o", markersize=7, clip_on=False, **_looks(r))
+        axes.annotate(t.number(_number(r)), (1, row), (32, 0), textcoords="offset points", ha="right",
+                      va="center", fontsize=8, annotation_clip=False)
     axes.axvline(0, color=style.MUTED, lw=0.7)
     axes.set_xlim(-1, 1)
     axes.set_xticks([-1, 0, 1])

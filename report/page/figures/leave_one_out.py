@@ -1,5 +1,5 @@
-"""What the result would have been without each target: two parameters as arrows in their plane, more as a dot for each
-target on a line of each parameter."""
+"""What the result would have been without each target: two parameters as arrows in their plane, more as a dot
+for each target on a line of each parameter."""
 import math
 
 import numpy as np
@@ -14,6 +14,7 @@ from uncertainty import axis_unit, known, moves, moves_in_u
 
 MOST_ARROWS, MOST_NAMES, MOST_ROWS = 40, 12, 40
 MANY_DOTS = 3000
+ROOM = 1.45    # beside the farthest dots, for their names
 STRETCH = 5.0  # of one axis against the other, from which on equal scales would flatten the figure
 
 
@@ -27,9 +28,11 @@ def draw(c: Calibration, t) -> style.Figure | None:
 def caption(c: Calibration, t) -> dict[str, str]:
     names, by = moves(c)
     if len(c.estimated) == 2:
-        return {"how": t("figure.leave_one_out.plane" if c.get("joint", {}).get("k") else "figure.leave_one_out.no_region"),
-                "left_out": _left_out(t, "names", MOST_NAMES, len(names))}
-    return {"how": t("figure.leave_one_out.dots"), "left_out": _left_out(t, "rows", MOST_ROWS, len(c.estimated))}
+        kind = "plane" if len(_region(c, np.ones(2))) else "no_region"
+        left_out = _left_out(t, "names", MOST_NAMES, len(names))
+    else:
+        kind, left_out = "dots", _left_out(t, "rows", MOST_ROWS, len(c.estimated))
+    return {"how": t(f"figure.leave_one_out.{kind}"), "left_out": left_out}
 
 
 def _left_out(t, what: str, most: int, number: int) -> str:
@@ -48,26 +51,27 @@ def _plane(c: Calibration, names: list[str], by: np.ndarray, t) -> style.Figure:
     for tip in tips if few else ():
         axes.annotate("", tip, (0, 0), arrowprops={"arrowstyle": "-|>", "color": style.SECONDARY, "lw": 1.3,
                                                    "shrinkA": 0, "shrinkB": 0}, annotation_clip=False)
-    axes.plot(*tips.T, "." if few else "o", color=style.SECONDARY, markersize=1 if few else 3, linestyle="none")
+    axes.plot(*tips.T, ".", color=style.SECONDARY, markersize=1 if few else 4, linestyle="none", zorder=1)
     axes.plot(0, 0, "o", color=style.PRIMARY, markersize=5)
     _limits(axes, np.vstack([tips, outline, [[0, 0]]]))
     for axis, parameter, unit in ((axes.xaxis, c.estimated[0], unit_x), (axes.yaxis, c.estimated[1], unit_y)):
         axis.set_label_text(t("figure.leave_one_out.axis", name=shortened(parameter["name"]), unit=unit))
     largest = np.argsort(-np.max(np.abs(moves_in_u(c)[1]), axis=1), kind="stable")[:MOST_NAMES]
     arrows = np.vstack([along((0, 0), tip) for tip in (tips if few else tips[:0])] + [outline])
-    place_labels(axes, [tips[k] for k in largest] + [point for _, point, _ in words],
-                 [shortened(names[k]) for k in largest] + [text for text, _, _ in words], np.vstack([arrows, tips]),
-                 [math.degrees(math.atan2(*tips[k][::-1])) for k in largest] + [where for _, _, where in words],
-                 [{}] * len(largest) + [{"color": style.PRIMARY}] * len(words))
+    labels = [(shortened(names[k]), tips[k], math.degrees(math.atan2(*tips[k][::-1])), {}) for k in largest]
+    labels += [(*word, {"color": style.PRIMARY}) for word in words]
+    texts, points, sides, looks = zip(*labels)
+    place_labels(axes, points, texts, np.vstack([arrows, tips]), sides, looks)
     return figure
 
 
 def _uncertainty(axes, c: Calibration, U: np.ndarray, scale: np.ndarray, t) -> tuple[np.ndarray, list]:
-    """The box of value +- U of each and the region of both; points on their lines, and their names: text, point, side."""
+    """The box of value +- U of each and the region of both; points on their lines, and text, point and side
+    of their names."""
     if not np.isfinite(U).all():
         return np.empty((0, 2)), []
     percent = t.number(f"{c.coverage_percent:.4g}")
-    axes.add_patch(Rectangle(-U, *(2 * U), facecolor=style.TERTIARY, alpha=0.35, edgecolor="none", zorder=0.5))
+    axes.add_patch(Rectangle(-U, *(2 * U), facecolor=style.TERTIARY, alpha=0.35, lw=0, zorder=0.5))
     axes.add_patch(Rectangle(-U, *(2 * U), facecolor="none", edgecolor=style.PRIMARY, lw=1))
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) * U
     points = [along(a, b) for a, b in zip(corners, corners[1:])]
@@ -76,12 +80,13 @@ def _uncertainty(axes, c: Calibration, U: np.ndarray, scale: np.ndarray, t) -> t
     if len(region):
         axes.plot(*region.T, "--", color=style.PRIMARY, lw=1)
         points.append(region)
-        words.append((t("figure.leave_one_out.region", percent=percent), region[np.argmin(region[:, 1])], 270))
+        lowest = region[np.argmin(region[:, 1])]
+        words.append((t("figure.leave_one_out.region", percent=percent), lowest, 270))
     return np.vstack(points), words
 
 
 def _region(c: Calibration, scale: np.ndarray) -> np.ndarray:
-    """The ellipse that holds both parameters jointly: k of the joint region, not of one (GUM, JCGM 102 6.5.2)."""
+    """The ellipse that holds both parameters jointly: with the k of two, not of one (JCGM 102, 6.5.2)."""
     k = (c.get("joint") or {}).get("k")
     if not k or not np.isfinite(c.covariance).all():
         return np.empty((0, 2))
@@ -109,18 +114,20 @@ def _dots(c: Calibration, t) -> style.Figure:
     axes.axvline(0, color=style.MUTED, lw=0.7)
     for row, k in enumerate(parameters):
         of = by[:, k]
-        axes.plot([np.nanmin(np.append(of, 0)), np.nanmax(np.append(of, 0))], [row, row], "-", color=style.FAINT, lw=1)
+        with_none = np.append(of, 0)
+        axes.hlines(row, np.nanmin(with_none), np.nanmax(with_none), color=style.FAINT, lw=1)
         axes.plot(of, np.full(len(of), row), "o", linestyle="none", color=style.SECONDARY, markersize=3.5,
                   markeredgecolor="white", markeredgewidth=0.3, rasterized=by.size > MANY_DOTS)
         if np.isfinite(of).any():
             most = int(np.nanargmax(np.abs(of)))
             axes.plot(of[most], row, "o", color=style.PRIMARY, markersize=4.5)
-            axes.annotate(shortened(names[most], 16), (of[most], row), (5 if of[most] > 0 else -5, 0),
-                          textcoords="offset points", ha="left" if of[most] > 0 else "right", va="center", fontsize=7)
+            side, ha = (5, "left") if of[most] > 0 else (-5, "right")
+            axes.annotate(shortened(names[most], 16), (of[most], row), (side, 0), textcoords="offset points",
+                          ha=ha, va="center", fontsize=7)
     axes.set_yticks(range(len(parameters)), [shortened(c.estimated[k]["name"]) for k in parameters])
     axes.set_ylim(len(parameters) - 0.4, -0.6)
     reach = max(1.2, float(np.nanmax(np.abs(np.nan_to_num(by)))))
-    axes.set_xlim(-1.25 * reach, 1.25 * reach)
+    axes.set_xlim(-reach * ROOM, reach * ROOM)
     axes.set_xlabel(t("figure.leave_one_out.in_u"))
     axes.spines["left"].set_visible(False)
     axes.tick_params(axis="y", length=0)

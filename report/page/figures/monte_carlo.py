@@ -1,4 +1,4 @@
-"""The trials of the Monte Carlo as a histogram against the density that value, u and dof say; below, both intervals."""
+"""The trials of the Monte Carlo as a histogram against the density of value, u and dof; below both intervals."""
 import math
 
 import numpy as np
@@ -34,34 +34,37 @@ def draw(c: Calibration, t) -> style.Figure | None:
 def caption(c: Calibration, t) -> dict[str, str]:
     number = len((c.get("montecarlo") or {}).get("parameters") or [])
     shown = len(_panels(c))
-    return {"left_out": " " + t("figure.monte_carlo.left_out", shown=shown, number=number) if number > shown else ""}
+    left_out = " " + t("figure.monte_carlo.left_out", shown=shown, number=number) if number > shown else ""
+    return {"left_out": left_out}
 
 
 def _panels(c: Calibration) -> list[dict]:
     """What was drawn; of many parameters those where the two intervals differ most."""
     all_of = [each for each in (c.get("montecarlo") or {}).get("parameters") or []
-              if c.parameter(each["name"]) and _edges(each).size > 1 and np.isfinite(_edges(each)).all()]
+              if c.parameter(each["name"]) and _is_whole(each.get("histogram") or {})]
     if len(all_of) <= MOST_PANELS:
         return all_of
     return sorted(all_of, key=lambda each: -np.nan_to_num(apart_in_u(each), nan=math.inf))[:MOST_PANELS]
 
 
-def _edges(trials: dict) -> np.ndarray:
-    return np.array((trials.get("histogram") or {}).get("edges") or [], dtype=float)
+def _is_whole(histogram: dict) -> bool:
+    edges, counts = (np.array(histogram.get(key) or [], dtype=float) for key in ("edges", "counts"))
+    return counts.size > 0 and edges.size == counts.size + 1 and np.isfinite(edges).all() and counts.sum() > 0
 
 
 def _panel(upper, lower, c: Calibration, trials: dict, t) -> None:
     parameter = c.parameter(trials["name"])
     factor, unit = axis_unit(parameter)
-    edges, counts = _edges(trials), np.array(trials["histogram"]["counts"], dtype=float)
+    edges, counts = (np.array(trials["histogram"][key], dtype=float) for key in ("edges", "counts"))
     ends = np.array([known(trials.get(key)) for key in ("low", "high", "gum_low", "gum_high")])
     seen = np.append(ends[np.isfinite(ends)], edges[[0, -1]])
     low, high = seen.min(), seen.max()
-    upper.stairs(counts / (counts.sum() * np.diff(edges) * factor), edges * factor, fill=True, color=style.TERTIARY)
+    density = counts / (counts.sum() * np.diff(edges) * factor)
+    upper.stairs(density, edges * factor, fill=True, color=style.TERTIARY)
     x = np.linspace(low, high, 300)
     if known(parameter.get("u")) > 0:
         upper.plot(x * factor, gum_density(x, parameter) / factor, "-", color=style.PRIMARY)
-    verdict = t(f"monte_carlo.verdict.{trials['verdict']}")
+    verdict = t.named("monte_carlo.verdict", trials["verdict"])
     upper.set_title(f"{shortened(trials['name'])}: {verdict}", pad=12)
     upper.set_yticks([])
     upper.spines["left"].set_visible(False)

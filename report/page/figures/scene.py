@@ -11,8 +11,8 @@ from labels import along, place_labels
 from notation import shortened
 
 MOST_NAMES, MOST_TARGETS = 12, 60
-MOST_SIGHTS = 9        # of a target; of all together
-MOST_OF_ALL = 120
+MOST_SIGHTS, MOST_OF_ALL = 9, 120  # lines of sight of a target, of all together
+MOST_EYES = 600
 LEFT, RIGHT, BELOW, ABOVE, BETWEEN = 0.62, 0.1, 0.5, 0.3, 0.75  # inches around the axes
 TALLEST = 6.5          # inches of axes
 WORTH_A_PAGE = 1.6     # by how much larger the views must come out to stand one above the other
@@ -20,7 +20,7 @@ AIR = 0.08             # of the larger extent
 
 
 def draw(c: Calibration, t) -> style.Figure | None:
-    standing = scene.standings(c)
+    standing = scene.standings(c)[:MOST_TARGETS]
     if not standing:
         return None
     side = scene.beside_axis if c.is_turntable else scene.from_front
@@ -42,10 +42,9 @@ def draw(c: Calibration, t) -> style.Figure | None:
 def caption(c: Calibration, t) -> dict[str, str]:
     number = len(scene.standings(c))
     kind = "turntable" if c.is_turntable else "robot" if c["model"] == "robot-ball" else "flange"
-    most = [("drawn", MOST_TARGETS), ("named", MOST_NAMES)]
-    return {"what": t(f"figure.scene.seen_{kind}"),
-            "left_out": "".join(" " + t(f"figure.scene.{which}", shown=limit, number=number)
-                                for which, limit in most if number > limit)}
+    words = ["named"] * (number > MOST_NAMES) + ["drawn"] * (number > MOST_TARGETS)
+    sentences = [t(f"figure.scene.{word}", shown=MOST_TARGETS, number=number) for word in words]
+    return {"what": t(f"figure.scene.seen_{kind}"), "left_out": "".join(" " + each for each in sentences)}
 
 
 def _extent(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -65,8 +64,8 @@ def _panels(extents) -> tuple[style.Figure, list]:
     inches = [scale * size for size in sizes]
     if scale == beside:
         height = max(size[1] for size in inches) + BELOW + ABOVE
-        places = [(LEFT, height - ABOVE - inches[0][1]),
-                  (max(style.WIDTH - RIGHT - inches[1][0], 2 * LEFT + inches[0][0]), height - ABOVE - inches[1][1])]
+        second = max(style.WIDTH - RIGHT - inches[1][0], 2 * LEFT + inches[0][0])
+        places = [(LEFT, height - ABOVE - inches[0][1]), (second, height - ABOVE - inches[1][1])]
     else:
         height = inches[0][1] + inches[1][1] + BELOW + ABOVE + BETWEEN
         places = [(LEFT, BELOW + BETWEEN + inches[1][1]), (LEFT, BELOW)]
@@ -81,20 +80,23 @@ def _panels(extents) -> tuple[style.Figure, list]:
 
 
 def _draw(axes, project, standing: list[scene.Standing], c: Calibration, t) -> None:
-    many = len(standing) > len(style.SERIES)
+    few = len(standing) <= len(style.SERIES)
     sights = max(1, min(MOST_SIGHTS, MOST_OF_ALL // len(standing)))
-    for k, each in enumerate(standing[:MOST_TARGETS]):
-        color, dash = (style.PRIMARY, "-") if many else (style.SERIES[k], style.DASHES[k])
+    for k, each in enumerate(standing):
+        color, dash = (style.SERIES[k], style.DASHES[k]) if few else (style.PRIMARY, "-")
         outline, eyes, seen = project(each.outline), project(each.eyes), project(each.seen)
         for i in scene.thinned(len(eyes), sights):
             axes.plot(*np.stack([eyes[i], seen[i]], axis=-1), "-", color=style.MUTED, lw=0.4, zorder=1)
-        axes.plot(*eyes[scene.thinned(len(eyes), MOST_OF_ALL)].T, "." if c.is_turntable else "x", color=style.INK,
-                  markersize=3, markeredgewidth=0.6, linestyle="none", zorder=3)
+        axes.plot(*eyes[scene.thinned(len(eyes), max(2, MOST_EYES // len(standing)))].T, linestyle="none",
+                  marker="." if c.is_turntable else "x", color=style.INK, markersize=3 if few else 2,
+                  markeredgewidth=0.6 if few else 0.4, zorder=3)
         if c.is_turntable and len(outline):
-            axes.plot(*project(scene.closed(each.outline)).T, linestyle=dash, color=color, zorder=4)
-            axes.fill(*project(scene.closed(each.outline)).T, color=color, alpha=0.15, lw=0, linestyle="-", zorder=2)
+            line = project(scene.closed(each.outline, 12 if project is scene.beside_axis else 1)).T
+            axes.plot(*line, linestyle=dash, color=color, lw=1.4 if few else 0.5, zorder=4)
+            if few:
+                axes.fill(*line, color=color, alpha=0.15, lw=0, linestyle="-", zorder=2)
         else:
-            axes.plot(*outline.T, "o", color=color, markersize=3, linestyle="none", zorder=4)
+            axes.plot(*outline.T, "o", color=color, markersize=3 if few else 2, linestyle="none", zorder=4)
     if c.is_turntable and project is scene.beside_axis:
         axes.axvline(0, linestyle="-.", color=style.INK, lw=1)
     else:
@@ -122,8 +124,9 @@ def _names(axes, project, standing: list[scene.Standing], c: Calibration, t) -> 
         kind = {"turntable": "profiler", "robot-ball": "scanner"}.get(c["model"], "flange")
         points.append(eyes[np.argmin(np.hypot(*eyes.T))])
         texts.append(t(f"figure.scene.{kind}"))
-    place_labels(axes, points, texts, _obstacles(axes, project, standing, c), [45, *directions, 225][:len(texts)],
-                 [{}, *looks, {}][:len(texts)])
+    number = len(texts)
+    place_labels(axes, points, texts, _obstacles(axes, project, standing, c), [45, *directions, 225][:number],
+                 [{}, *looks, {}][:number])
 
 
 def _obstacles(axes, project, standing: list[scene.Standing], c: Calibration) -> np.ndarray:
@@ -131,7 +134,7 @@ def _obstacles(axes, project, standing: list[scene.Standing], c: Calibration) ->
     drawn = [project(each.outline) for each in standing] + [project(each.eyes) for each in standing]
     if c.is_turntable:
         drawn += [project(scene.closed(each.outline)) for each in standing if len(each.outline)]
-        drawn += [along(a, b, 12) for each in standing[:MOST_TARGETS]
+        drawn += [along(a, b, 12) for each in standing
                   for a, b in zip(project(each.eyes[::4]), project(each.seen[::4]))]
         if project is scene.beside_axis:
             drawn.append(along((0, axes.get_ylim()[0]), (0, axes.get_ylim()[1])))

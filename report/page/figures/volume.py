@@ -1,5 +1,5 @@
-"""The largest U of a measured point over the working volume: maps from above in slices of z, or over depth and height in
-slices of alpha, whichever loses less."""
+"""The largest U of a measured point over the working volume: maps from above in slices of z, or over depth
+and height in slices of alpha, whichever loses less."""
 import numpy as np
 from matplotlib import ticker
 
@@ -18,8 +18,8 @@ def draw(c: Calibration, t) -> style.Figure | None:
     maps = [_map(found, at) for at in found.slices]
     panel = (style.WIDTH - 1.6) / len(maps)
     shape = max(np.ptp(up) for _, up, _ in maps) / max(np.ptp(across) for across, _, _ in maps)
-    height = 0.9 + panel * shape if found.sliced == 2 else 3.2
-    figure, axes = style.new_figure(min(5.0, max(2.4, height)), 1, len(maps), squeeze=False, sharex=True, sharey=True)
+    height = min(5.0, max(2.4, 0.9 + panel * shape)) if found.sliced == 2 else 3.2
+    figure, axes = style.new_figure(height, 1, len(maps), squeeze=False, sharex=True, sharey=True)
     levels = ticker.MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(found.least, found.largest)
     ends = min(U.min() for *_, U in maps), max(U.max() for *_, U in maps)
     for each, at, (across, up, U) in zip(axes[0], found.slices, maps):
@@ -34,7 +34,8 @@ def draw(c: Calibration, t) -> style.Figure | None:
         for value, marker, color in zip(ends, "v^", ("white", style.INK)):
             here = np.argwhere(U == value)
             if len(here):
-                each.plot(across[tuple(here[0])], up[tuple(here[0])], marker, color=color, markeredgecolor=style.INK,
+                at_node = tuple(here[0])
+                each.plot(across[at_node], up[at_node], marker, color=color, markeredgecolor=style.INK,
                           markersize=7, clip_on=False, zorder=5)
     axes[0, 0].set_ylabel("Y / mm" if found.sliced == 2 else "z / mm")
     figure.colorbar(drawn, ax=list(axes[0]), label=t("figure.volume.scale"), ticks=levels, shrink=0.95,

@@ -9,5 +9,6 @@ NO_COLUMN = 0.0005  # a share that would be printed as 0.0 in every row
 
 def content(c: Calibration, previous, t) -> dict[str, object]:
     few = len(c.estimated) <= FEW_PARAMETERS
-    return {"lines": c.get("budget") or [], "few": few, "known": known, "units": [axis_unit(p) for p in c.estimated],
+    return {"lines": c.get("budget") or [], "few": few, "known": known,
+            "units": [axis_unit(p) for p in c.estimated],
             "by_parameter": [] if few else table_of_shares(c, t, MOST_PIECES, NO_COLUMN)}

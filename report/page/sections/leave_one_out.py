@@ -13,7 +13,7 @@ MOST_ROWS = 40
 def content(c: Calibration, previous, t) -> dict[str, object]:
     names, in_u = moves_in_u(c)
     few = len(c.estimated) <= FEW_PARAMETERS
-    rows = [] if not names or not np.isfinite(in_u).any() else _by_target(c, t) if few else _by_parameter(c, t)
+    rows = (_by_target if few else _by_parameter)(c, t) if np.isfinite(in_u).any() else []
     return {"few": few, "number": len(names), "rows": rows, "units": [axis_unit(p)[1] for p in c.estimated]}
 
 

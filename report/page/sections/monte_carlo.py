@@ -10,7 +10,8 @@ def content(c: Calibration, previous, t) -> dict[str, object]:
     found = c.get("montecarlo") or {}
     rows = [_row(each, c.parameter(each["name"])) for each in found.get("parameters") or []
             if c.parameter(each["name"])]
-    return {"rows": rows, "about": _about(found, t) if rows else "", "percent": t.number(f"{c.coverage_percent:.4g}")}
+    percent = t.number(f"{c.coverage_percent:.4g}")
+    return {"rows": rows, "about": _about(found, t) if rows else "", "percent": percent}
 
 
 def _row(trials: dict, parameter: dict) -> dict[str, object]:

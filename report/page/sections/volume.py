@@ -12,6 +12,7 @@ def content(c: Calibration, previous, t) -> dict[str, str]:
 def _words(found: volume.Volume, t) -> str:
     least, largest = (t.number(significant(value)) for value in (found.least, found.largest))
     if found.is_even:
-        return t("volume.even", U=largest)
+        between = t("volume.range", least=least, largest=largest)
+        return t("volume.even", U=largest if least == largest else between)
     place = {name: t.number(significant(value, 3)) for name, value in found.where(found.largest).items()}
     return t("volume.uneven", least=least, largest=largest, **place)
