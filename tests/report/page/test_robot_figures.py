@@ -76,7 +76,7 @@ class LinksTest(unittest.TestCase):
     def test_a_number_that_is_not_known_is_none(self):
         unknown = estimated("a_1", 0.0, 1.0, nominal=25.0) | {"value": None, "u": None, "U": None}
         c = robot([], parameters=[unknown, estimated("a_2", 0.1, 0.01)])
-        self.assertIn("a_1 25 mm – mm – mm 2.04 – mm data", text_of("links", c))
+        self.assertIn("a_1 25 mm – mm – mm 2.04 – mm mostly the prior", text_of("links", c))
         self.assertIn("a_1", texts_in(drawn("links", c)))
 
     def test_hand_eye(self):
