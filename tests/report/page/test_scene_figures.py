@@ -50,6 +50,13 @@ class LabelsTest(unittest.TestCase):
             for x, y in axes.transData.transform(points):
                 self.assertFalse(box.x0 < x < box.x1 and box.y0 < y < box.y1)
 
+    def test_no_corner_draws_a_name_outside(self):
+        for corner, direction in (((0, 0), 225), ((1, 0), 315), ((0, 1), 135), ((1, 1), 45)):
+            axes, found, boxes = self.placed([corner], ["name"], directions=[direction])
+            self.assertEqual(found, [0])
+            self.assertTrue((boxes[0].min >= axes.get_window_extent().min).all())
+            self.assertTrue((boxes[0].max <= axes.get_window_extent().max).all())
+
     def test_names_of_one_point_spread(self):
         _, found, boxes = self.placed([(0.5, 0.5)] * 4, ["the same place"] * 4)
         self.assertEqual(len(found), 4)
