@@ -16,8 +16,8 @@ _OWN = 6         # points around what is named, where its tie may lie on what is
 def place_labels(axes, points, names: list[str], obstacles=(), directions=None, looks=()) -> list[int]:
     """Writes each name beside its point (data coordinates), the first one first, and returns which found
     room; the others are left out. obstacles: (x, y) that no name may hide. directions: degrees, where each name
-    should lie if it can; looks: of each text. The figure must have everything that takes part in its layout:
-    names do not change it."""
+    should lie if it can; looks: of each text. Names take no part in the layout of the figure: everything else
+    must be there."""
     axes.figure.draw_without_rendering()
     points = np.array(points, dtype=float).reshape(-1, 2)
     drawn = np.vstack([points, np.array(obstacles, dtype=float).reshape(-1, 2)])

@@ -1,4 +1,5 @@
 """Errors of a robot's links, in units that fit them: lengths in mm, angles in mrad."""
+import math
 import re
 from dataclasses import dataclass
 
@@ -9,7 +10,7 @@ UNITS = ["mm", "mrad"]
 
 @dataclass(frozen=True)
 class LinkError:
-    """value, U and prior in its unit; nominal in mm or rad, as the file has it."""
+    """value (nan: not known), U and prior in its unit; nominal in mm or rad, as the file has it."""
     name: str
     link: int
     unit: str
@@ -37,9 +38,10 @@ def link_errors(c: Calibration) -> list[LinkError]:
 def _link_error(parameter: dict, determined: dict[str, str]) -> LinkError:
     name, role, k = parameter["name"], parameter["role"], parameter.get("k")
     unit, factor = ("mrad", 1000.0) if parameter["unit"] == "rad" else ("mm", 1.0)
-    value, u, U, prior, prior_u = (factor * (parameter.get(key) or 0.0)
-                                   for key in ("value", "u", "U", "prior", "prior_u"))
-    kind = {"estimate": determined.get(name, "data"), "consider": "considered"}.get(role, "held")
+    value = math.nan if parameter.get("value") is None else factor * parameter["value"]
+    u, U, prior, prior_u = (factor * (parameter.get(key) or 0.0) for key in ("u", "U", "prior", "prior_u"))
+    by_prior = determined.get(name) == "prior"
+    kind = {"estimate": "prior" if by_prior else "data", "consider": "considered"}.get(role, "held")
     U = {"estimate": U, "consider": 2 * u}.get(role, 0.0)
     return LinkError(name, int(re.sub(r"\D", "", name)), unit, kind, value, u, U, k, parameter.get("nominal"),
                      prior, prior_u)

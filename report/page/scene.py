@@ -29,7 +29,8 @@ def standings(c: Calibration) -> list[Standing]:
     """Targets of which anything is known."""
     targets = (c.get("scene") or {}).get("targets") or []
     found = [Standing(each.get("name", ""), _points(each.get("outline"), ""),
-                      _points(each.get("views"), "from_"), _points(each.get("views"), "to_")) for each in targets]
+                      _points(each.get("views"), "from_"),
+                      _points(each.get("views"), "to_")) for each in targets]
     return [each for each in found if len(each.outline) + len(each.eyes) and np.isfinite(each.middle).all()]
 
 

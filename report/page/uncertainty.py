@@ -70,8 +70,8 @@ def strongest_pairs(c: Calibration, most: int) -> list[tuple[str, str, float]]:
 
 
 def weakest_direction(c: Calibration) -> list[tuple[str, float]]:
-    """The parameters that take part in it, largest first, the largest positive; as a unit vector of quantities
-    that are scaled to move the residuals alike."""
+    """The parameters that take part in it, largest first, the largest positive: components of a unit vector,
+    of quantities that are scaled to move the residuals alike."""
     parts = [(name, known(component)) for name, component in (c.get("weakest") or {}).items()]
     parts = sorted((part for part in parts if math.isfinite(part[1])), key=lambda part: -abs(part[1]))
     if not parts or parts[0][1] == 0:

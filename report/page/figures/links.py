@@ -86,6 +86,8 @@ def _draw(axes, rows: list[links.LinkError], t) -> None:
                       zorder=1)
         if row.U:
             axes.plot([row.value - row.U, row.value + row.U], [k, k], "-", color=edge, lw=1.2, zorder=2)
+        if not np.isfinite(row.value):
+            continue
         axes.plot(min(max(row.value, low), high), k, marker, color=edge, markerfacecolor=fill, zorder=3,
                   linestyle="none")
     axes.axvline(0, color=style.INK, lw=0.7, linestyle="-", zorder=1)

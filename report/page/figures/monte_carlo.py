@@ -1,4 +1,4 @@
-"""The trials of the Monte Carlo as a histogram against the density of value, u and dof; below both intervals."""
+"""The trials of the Monte Carlo as a histogram against the density of value, u and dof; both intervals."""
 import math
 
 import numpy as np

@@ -51,14 +51,15 @@ def caption(c: Calibration, t) -> dict[str, str]:
     factor, unit = length_unit(float(station.lengths[k]))
     rms = np.sqrt(np.mean(np.vstack([each.residuals for each in found])**2, axis=0))
     factor_rms, unit_rms = length_unit(float(rms.max()))
-    return {"frame": t(f"figure.robot_residuals.frame_{kind}"), "what": t(f"figure.robot_residuals.what_{kind}"),
-            "size": t.number(significant(factor * float(station.lengths[k]), 2)), "unit": unit,
-            "where": t(f"figure.robot_residuals.where_{kind}", pose=shortened(_pose(station, k), 60),
-                       ball=shortened(station.ball_of[k], 60), station=shortened(station.name, 60)),
-            "rms": ", ".join(f"{name} {t.number(significant(factor_rms * of, 2))}" for name, of in zip(AXES, rms)),
-            "unit_rms": unit_rms,
-            "notes": t("figure.robot_residuals.some", drawn=len(drawn), number=count(len(found)))
-            if len(drawn) < len(found) else ""}
+    words = {key: t(f"figure.robot_residuals.{key}_{kind}") for key in ("frame", "what", "bad")}
+    return words | {
+        "size": t.number(significant(factor * float(station.lengths[k]), 2)), "unit": unit,
+        "where": t(f"figure.robot_residuals.where_{kind}", pose=shortened(_pose(station, k), 60),
+                   ball=shortened(station.ball_of[k], 60), station=shortened(station.name, 60)),
+        "rms": ", ".join(f"{name} {t.number(significant(factor_rms * of, 2))}" for name, of in zip(AXES, rms)),
+        "unit_rms": unit_rms,
+        "notes": t("figure.robot_residuals.some", drawn=len(drawn), number=count(len(found)))
+        if len(drawn) < len(found) else ""}
 
 
 def _kind(c: Calibration) -> str:

@@ -46,4 +46,4 @@ def _in_u(by: float) -> str:
 
 
 def _signed(number: str) -> str:
-    return number if number[0] in f"{MINUS}–∞" else "+" + number
+    return number if number[0] in f"{MINUS}–∞" or not number.strip("0.") else "+" + number

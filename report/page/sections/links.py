@@ -20,7 +20,7 @@ def _row(error: links.LinkError, t) -> dict[str, str]:
     nominal, calibrated = _numbers(error)
     return {"name": error.name, "kind": error.kind, "nominal": t.number(nominal),
             "calibrated": t.number(calibrated), "error": t.number(_written(error.value, error.u)) + " " + error.unit,
-            "U": t.number(significant(error.U, 2)) + " " + error.unit if estimated else "",
+            "U": t.number(significant(error.U or None, 2)) + " " + error.unit if estimated else "",
             "k": t.number(significant(error.k, 3)) if estimated else "",
             "prior_u": t.number(significant(error.prior_u, 2)) + " " + error.unit if error.prior_u else ""}
 
@@ -35,6 +35,8 @@ def _numbers(error: links.LinkError) -> tuple[str, str]:
 
 
 def _written(value: float, u: float) -> str:
+    if not math.isfinite(value):
+        return "–"
     return concise(value, u) if u else f"{value:.6g}".replace("-", MINUS)
 
 
@@ -43,8 +45,12 @@ def _matrix(c: Calibration, t) -> list[list[str]]:
     rows = c.get("hand_eye") or []
     if len(rows) != 4 or any(len(row) != 4 or None in row for row in rows):
         return []
-    return [[t.number(f"{number:.{4 if j == 3 else 7}f}".replace("-", MINUS)) for j, number in enumerate(row)]
+    return [[t.number(_fixed(number, 4 if j == 3 else 7)) for j, number in enumerate(row)]
             for row in rows[:3]] + [["0", "0", "0", "1"]]
+
+
+def _fixed(number: float, decimals: int) -> str:
+    return f"{round(number, decimals) + 0.0:.{decimals}f}".replace("-", MINUS)  # + 0.0: zero has no sign
 
 
 def _hand_eye(c: Calibration) -> list[tuple[str, list[dict]]]:

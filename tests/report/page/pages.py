@@ -22,6 +22,8 @@ if PANDA.exists():
 else:
     print(f"NO DATA: {PANDA} is not there; the page of a ball on a flange was not looked at", file=sys.stderr)
 
+LANGUAGES = {"named": ["en"], "named_robot": ["en"], "many_targets": ["en"], "many_stations": ["en"]}  # else both
+
 _folder = tempfile.TemporaryDirectory(prefix="scancal_page_")
 
 
@@ -50,9 +52,15 @@ def calibration(scene: str) -> Path:
 
 @functools.cache
 def page(scene: str, language: str = "en") -> Path:
+    """The English one also as a PDF beside it."""
     file = folder() / f"{scene}_{language}.html"
-    report(calibration(scene), f"--out={file}", f"--language={language}")
+    pdf_too = [f"--pdf={file.with_suffix('.pdf')}"] if language == "en" else []
+    report(calibration(scene), f"--out={file}", f"--language={language}", *pdf_too, PYTHONHASHSEED="1", TZ="UTC")
     return file
+
+
+def pdf(scene: str) -> Path:
+    return page(scene).with_suffix(".pdf")
 
 
 def report(calibration_json: Path, *arguments: str, **environment: str) -> str:

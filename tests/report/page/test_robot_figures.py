@@ -73,12 +73,18 @@ class LinksTest(unittest.TestCase):
         self.assertNotIn("Nominal ", shown)
         self.assertIn("theta_2 1.00(10) mrad", shown)
 
+    def test_a_number_that_is_not_known_is_none(self):
+        unknown = estimated("a_1", 0.0, 1.0, nominal=25.0) | {"value": None, "u": None, "U": None}
+        c = robot([], parameters=[unknown, estimated("a_2", 0.1, 0.01)])
+        self.assertIn("a_1 25 mm – mm – mm 2.04 – mm mostly the prior", text_of("links", c))
+        self.assertIn("a_1", texts_in(drawn("links", c)))
+
     def test_hand_eye(self):
         numbers = [estimated(f"hand_eye_{axis}", 0.5, 0.01, "rad" if "r" in axis else "mm")
                    for axis in ("x", "y", "z", "rx", "ry", "rz")]
         matrix = [[0.0, 1.0, 0.0, 1.31907], [1.0, 0.0, -1e-9, 0.5], [0.0, 0.0, -1.0, 264.0], [0.0, 0.0, 0.0, 1.0]]
         shown = text_of("links", robot([], parameters=numbers, hand_eye=matrix))
-        self.assertIn("0.0000000 1.0000000 0.0000000 1.3191", shown)
+        self.assertIn("0.0000000 1.0000000 0.0000000 1.3191 1.0000000 0.0000000 0.0000000 0.5000", shown)
         self.assertIn("translation / mm 0.500(10) 0.500(10) 0.500(10)", shown)
         damaged = text_of("links", robot([], parameters=numbers, hand_eye=[[None] * 4] * 4))
         self.assertNotIn("1.3191", damaged)
