@@ -32,7 +32,10 @@ void ExpectNumbers(const Json& json, const std::string& where) {
     EXPECT_TRUE(std::isfinite(json.get<double>())) << where;
   }
   if (!json.is_structured()) return;
-  for (const auto& item : json.items()) ExpectNumbers(item.value(), where + "/" + item.key());
+  for (const auto& item : json.items()) {
+    const bool of_a_method = where.starts_with("/compare/") && item.value().is_null();  // a step has no u
+    if (!of_a_method) ExpectNumbers(item.value(), where + "/" + item.key());
+  }
 }
 
 TEST_F(TiltingLidarTest, ItsOffsetsComeOutWhereTheDrawingHasThem) {
