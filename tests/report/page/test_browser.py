@@ -8,9 +8,11 @@ from pathlib import Path
 
 import browser
 import pages
+from pictures import broken_images, broken_svgs
 from printed import Printed
 
 WIDTHS = [1280, 390]
+MOST_BYTES = 3_000_000
 OF_ALL = ["budget", "correlation", "scene"]
 OF_SCANS = ["comparison", "residual_map", "residual_sweep", "residual_line", "residual_histogram", "surface_contour",
             "surface_3d", "volume"]
@@ -66,6 +68,14 @@ class PageTest(InBrowser):
                 self.assertEqual(self.browser.too_wide(), 0)
             with self.subTest(what, of="figures"):
                 self.assertEqual(sorted(self.browser.figures()), sorted(f"figure-{name}" for name in FIGURES[scene]))
+
+    def test_pictures_are_whole_and_pages_can_be_sent(self):
+        for scene in pages.SCENES:
+            html = pages.page(scene).read_text(encoding="utf-8")
+            with self.subTest(scene):
+                self.assertEqual(broken_svgs(html), [])
+                self.assertEqual(broken_images(html), [])
+                self.assertLess(len(html), MOST_BYTES)
 
     def test_every_figure_is_on_a_page(self):
         drawn = {file.stem for file in (pages.SOURCE / "report/page/figures").glob("[!_]*.py")}
@@ -133,13 +143,20 @@ class BrowserPrintTest(InBrowser):
 
     def test_prints_whole_figures_and_tables(self):
         for what, _ in self.each_page(widths=[1280]):
-            printed = self.printed()
-            for found in [printed.wrong_sheets(), printed.lost(self.browser), printed.cut_figures(self.browser),
-                          printed.cut_rows(self.browser)]:
-                with self.subTest(what):
-                    self.assertEqual(found, [])
+            self.assert_whole(self.printed(), what)
             with self.subTest(what, of="width"):
                 self.assertEqual(self.browser.too_wide_for_a_sheet(), 0)
+
+    def test_so_does_the_pdf(self):
+        for scene in pages.SCENES:
+            self.browser.open(pages.page(scene))
+            self.assert_whole(Printed(pages.pdf(scene)), scene)
+
+    def assert_whole(self, printed: Printed, what: str):
+        for found in [printed.wrong_sheets(), printed.lost(self.browser), printed.cut_figures(self.browser),
+                      printed.cut_rows(self.browser)]:
+            with self.subTest(what):
+                self.assertEqual(found, [])
 
     def test_what_is_cut_is_seen(self):
         self.open_changed(lambda html: html.replace("size: A4;", "size: A5;").replace("counter(pages)", "1"))
