@@ -1,10 +1,13 @@
 """calibration.json -> one page that is filed; started by `scancal report`. It reads that file and nothing else."""
 import argparse
 import sys
+import traceback
 from pathlib import Path
 
+import consistency
 from calibration import Complaint, read_calibration
 from language import LANGUAGES, Language
+from output import check_outputs, write_whole
 
 PACKAGES = {"jinja2": "python3-jinja2", "markupsafe": "python3-markupsafe", "matplotlib": "python3-matplotlib",
             "numpy": "python3-numpy", "fontTools": "python3-fonttools", "weasyprint": "weasyprint"}
@@ -24,12 +27,14 @@ def arguments() -> argparse.Namespace:
 def main() -> int:
     choice = arguments()
     try:
+        check_outputs([choice.out, choice.pdf, choice.dcc], [choice.calibration, choice.previous])
         calibration = read_calibration(choice.calibration)
         previous = read_calibration(choice.previous) if choice.previous else None
+        for each in filter(None, [calibration, previous]):
+            consistency.check(each)
         language = Language(choice.language)
         if choice.out or choice.pdf:
             from page import render_page  # Matplotlib takes half a second, and a certificate needs none
-            from output import write_whole
             html = render_page(calibration, previous, language)
             if choice.out:
                 write_whole(choice.out, html.encode())
@@ -41,6 +46,12 @@ def main() -> int:
             write_certificate(calibration, language, choice.dcc)
     except Complaint as complaint:
         print(f"scancal: {complaint}", file=sys.stderr)
+        return 1
+    except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        print(f"scancal: {choice.calibration}: a damaged or edited file, or a mistake of this program "
+              f"({type(error).__name__}: {str(error)[:80]}; {Path(place.filename).name}:{place.lineno}); "
+              "refine the data set again", file=sys.stderr)
         return 1
     except ModuleNotFoundError as error:
         if error.name not in PACKAGES:

@@ -6,6 +6,17 @@ from pathlib import Path
 from calibration import Complaint
 
 
+def check_outputs(outputs: list[Path | None], inputs: list[Path | None]) -> None:
+    """Raises Complaint where a file to be written is no file, is written twice, or is what is read."""
+    taken = {each.resolve() for each in inputs if each}
+    for file in filter(None, outputs):
+        if file.exists() and not file.is_file():
+            raise Complaint(f"{file}: it is no file that could be replaced; give the name of a file")
+        if file.resolve() in taken:
+            raise Complaint(f"{file}: it is read or written by the same command; give each file a name of its own")
+        taken.add(file.resolve())
+
+
 def write_whole(file: Path, content: bytes) -> None:
     """To a temporary name beside it, then renamed: an interrupted run leaves the old file."""
     try:
