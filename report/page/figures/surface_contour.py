@@ -30,7 +30,8 @@ def draw(c: Calibration, t) -> style.Figure | None:
 def caption(c: Calibration, t) -> dict[str, str]:
     joint, notes = joint_region(c), []
     if searched(c) and near(c):
-        notes.append(t("figure.surface_contour.beside"))
+        hidden = (_sides(near(c)) < 3 * SMALLEST * _sides(searched(c))).all()
+        notes.append(t(f"figure.surface_contour.{'inside' if hidden else 'beside'}"))
     if any(surface.is_logarithmic for surface in (searched(c), near(c)) if surface):
         notes.append(t("figure.surface_contour.logarithmic"))
     if joint and near(c):

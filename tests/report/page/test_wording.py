@@ -134,7 +134,8 @@ class ProcedureTest(unittest.TestCase):
                       "3 set aside.", told.replace("\N{NARROW NO-BREAK SPACE}", " "))
         self.assertIn("M, N, tilt_x and the plane of every target", told)
         self.assertIn("every view (profile or pose) weighted", told)
-        self.assertIn("in 7 iterations; the start came from a grid search in steps of 1 mm (651 nodes).",
+        self.assertIn("in 7 iterations; the start came from the middle of the searched box or, where that was better, "
+                      "from a grid search in steps of 1 mm (651 nodes).",
                       told.replace(
             "\N{NO-BREAK SPACE}", " "))
         self.assertNotIn("Monte Carlo", told)
