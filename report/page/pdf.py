@@ -8,18 +8,21 @@ import logging
 import os
 import re
 import subprocess
+from html import unescape
 from pathlib import Path
 
 from calibration import Complaint
+from notation import shortened
 from output import write_whole
 
-# A foot with the name on every page: a sheet that is found alone can be put back.
+# A foot with the name on every page: a sheet that is found alone can be put back. Not cut by text-overflow: there
+# WeasyPrint tells readers of the file that an ellipsis, here and everywhere, means the words that it stands for.
 _FOOT = """
-h1 { string-set: name content(); }
-@page { @bottom-left { content: string(name); font: 8pt Inter; color: #66727f; width: 85%; margin-top: 6mm;
-                       max-height: 1.5em; overflow: hidden; white-space: nowrap; text-overflow: ellipsis; }
+@page { @bottom-left { content: "%s"; font: 8pt Inter; color: #66727f; width: 85%%; margin-top: 6mm;
+                       max-height: 1.5em; overflow: hidden; white-space: nowrap; }
         @bottom-right { margin-top: 6mm; max-height: 1.5em; } }
 """
+_LETTERS = 90  # of the name: as many as have room
 
 
 def print_page(html: str, file: Path) -> None:
@@ -34,9 +37,14 @@ def print_page(html: str, file: Path) -> None:
     logging.getLogger("weasyprint").setLevel(logging.ERROR)  # it warns of every property that is the screen's
     os.environ["SOURCE_DATE_EPOCH"] = "0"  # the embedded fonts carry a date
     document = weasyprint.HTML(string=_for_weasyprint(html), base_url="", url_fetcher=_only_inside)
-    write_whole(file, document.write_pdf(stylesheets=[weasyprint.CSS(string=_FOOT)], variant="pdf/a-2b",
+    write_whole(file, document.write_pdf(stylesheets=[weasyprint.CSS(string=_foot(html))], variant="pdf/a-2b",
                                          identifier=hashlib.sha256(html.encode()).hexdigest()[:32].encode(),
                                          finisher=_without_interpolation))
+
+
+def _foot(html: str) -> str:
+    name = shortened(unescape(re.search("<h1>(.*?)</h1>", html, re.S)[1]), _LETTERS)
+    return _FOOT % "".join(c if c.isalnum() or c == " " else f"\\{ord(c):x} " for c in name)
 
 
 def _letters_without_font(html: str) -> str:
@@ -50,7 +58,7 @@ def _for_weasyprint(html: str) -> str:
     html = re.sub(r'(<text style="[^"]*?)font: (?:(\w+) )?([\d.]+px) ([^;"]*)', _font, html)
     head, body = html.split("</style>", 1)
     variables = dict(re.findall(r"(--[\w-]+):\s*([^;}]+)", head))
-    return re.sub(r"var\((--[\w-]+)\)", lambda name: variables[name[1]].strip(), head) + "</style>" + body
+    return re.sub(r"var\((--[\w-]+)\)", lambda name: variables.get(name[1], name[0]).strip(), head) + "</style>" + body
 
 
 def _font(shorthand: re.Match) -> str:

@@ -14,10 +14,18 @@ from printed import Printed
 
 class PdfTest(unittest.TestCase):
     def test_every_sheet_has_the_name(self):
-        for scene in ["sample", "named"]:
+        for scene in ["sample", "named_robot"]:
             name = re.sub(r"\s", "", json.loads(pages.calibration(scene).read_text())["name"])
             without = [k for k, letters in enumerate(Printed(pages.pdf(scene)).pages) if name[:40] not in letters]
             self.assertEqual(without, [], scene)  # of a long one more has no room
+
+    def test_names_are_not_read_as_rules_of_style(self):
+        found = json.loads(pages.calibration("sample").read_text()) | {"name": 'var(--evil) "; } h1 { font: 9px x'}
+        file = pages.folder() / "style.json"
+        file.write_text(json.dumps(found))
+        pages.report(file, f"--pdf={file.with_suffix('.pdf')}")
+        for letters in Printed(file.with_suffix(".pdf")).pages:
+            self.assertIn('var(--evil)";}h1{font:9pxx', letters)
 
     def test_is_for_the_archive(self):
         file = pages.pdf("sample")
