@@ -70,7 +70,7 @@ RobotData Fewer(RobotData data, int balls) {
   for (Station& station : data.stations)
     for (size_t j = 0; j < station.views.size(); ++j) {
       auto& seen = station.views[j].balls;
-      std::ranges::rotate(seen, seen.begin() + static_cast<int>(3 * j % seen.size()));
+      std::rotate(seen.begin(), seen.begin() + static_cast<int>(3 * j % seen.size()), seen.end());
       seen.resize(balls);
     }
   return data;
