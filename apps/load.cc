@@ -1,6 +1,6 @@
 #include "apps/load.h"
 #include <cstdio>
-#include "io/hash.h"
+#include "io/input_file.h"
 #include "io/json_file.h"
 #include "report/calibration_json.h"
 

@@ -1,8 +1,8 @@
 // scancal simulate --model=turntable
 #include <gflags/gflags.h>
 #include <cstdio>
-#include <numbers>
 #include "apps/simulate.h"
+#include "io/units.h"
 #include "models/turntable/simulate.h"
 
 DECLARE_string(out);
@@ -36,7 +36,6 @@ namespace scancal {
 namespace {
 
 int Run() {
-  constexpr double kDegree = std::numbers::pi / 180;
   if (FLAGS_format != "csv" && FLAGS_format != "npy")
     return Complain("--format: found \"" + FLAGS_format + "\", expected csv or npy");
   if (FLAGS_form_kind != "modes" && FLAGS_form_kind != "smooth" && FLAGS_form_kind != "bent")

@@ -4,7 +4,7 @@
 #include "apps/command.h"
 #include "apps/load.h"
 #include "io/json_file.h"
-#include "io/point_cloud.h"
+#include "io/points.h"
 #include "report/calibration_json.h"
 
 DECLARE_string(out);

@@ -1,8 +1,9 @@
-// An open file to read from, with complaints that name it.
+// An open file to read from, with complaints that name it, and the fingerprint of its bytes.
 #pragma once
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include "io/result.h"
 
 namespace scancal {
@@ -30,5 +31,9 @@ class InputFile {
 };
 
 Result<std::string> ReadText(const std::filesystem::path& path);  // the whole file; for small ones
+
+// 64 lower-case hexadecimal digits.
+Result<std::string> Sha256(const std::filesystem::path& path);
+Result<std::string> Sha256OfText(std::string_view text);
 
 }  // namespace scancal

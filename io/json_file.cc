@@ -1,11 +1,11 @@
 #include "io/json_file.h"
+#include <openssl/evp.h>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include "io/input_file.h"
 #include "io/message.h"
 #include "io/output_file.h"
-#include "io/utf8.h"
 
 namespace scancal {
 namespace {
@@ -69,6 +69,12 @@ void Append(const Json& json, const std::string& indent, std::string* text) {
   *text += "\n" + indent + (json.is_array() ? "]" : "}");
 }
 
+constexpr char kAlphabet[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+constexpr size_t kMost = size_t{1} << 30;  // OpenSSL counts in int
+constexpr size_t kBlock = size_t{3} << 20;
+
+const unsigned char* Unsigned(std::string_view text) { return reinterpret_cast<const unsigned char*>(text.data()); }
+
 }  // namespace
 
 Result<Json> ReadJson(const std::filesystem::path& path) {
@@ -100,6 +106,35 @@ Result<void> WriteJson(const std::filesystem::path& path, const Json& json) {
   std::string text;
   Append(json, "", &text);
   return WriteFile(path, text + "\n");
+}
+
+std::string ToBase64(std::string_view bytes) {
+  std::string text;
+  for (size_t at = 0; at < bytes.size(); at += kBlock) {
+    const std::string_view block = bytes.substr(at, kBlock);
+    const size_t filled = text.size();
+    text.resize(filled + (block.size() + 2) / 3 * 4 + 1);  // and the zero that OpenSSL appends
+    const int written = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()) + filled, Unsigned(block),
+                                        static_cast<int>(block.size()));
+    text.resize(filled + static_cast<size_t>(written));
+  }
+  return text;
+}
+
+Result<std::string> FromBase64(std::string_view text) {
+  if (text.size() > kMost) return Error{"found " + std::to_string(text.size()) + " characters, expected at most 2^30"};
+  // OpenSSL takes blanks around the text and '=' anywhere.
+  const size_t padding = text.ends_with("==") ? 2 : text.ends_with("=") ? 1 : 0;
+  const size_t odd = text.substr(0, text.size() - padding).find_first_not_of(kAlphabet);
+  if (odd != std::string_view::npos)
+    return Error{"found " + Quoted(text.substr(odd, 1)) + " as character " + std::to_string(odd + 1) +
+                 ", expected base64"};
+  if (text.size() % 4 != 0)
+    return Error{"found " + std::to_string(text.size()) + " characters, expected base64, a multiple of four"};
+  std::string bytes(text.size() / 4 * 3, '\0');
+  EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()), Unsigned(text), static_cast<int>(text.size()));
+  bytes.resize(bytes.size() - padding);
+  return bytes;
 }
 
 }  // namespace scancal

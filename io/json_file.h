@@ -1,7 +1,9 @@
-// JSON documents on disk.
+// JSON documents on disk, and bytes inside them.
 #pragma once
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
 #include "io/result.h"
 
 namespace scancal {
@@ -9,7 +11,11 @@ namespace scancal {
 // Keys keep the order in which they were put in.
 using Json = nlohmann::ordered_json;
 Result<Json> ReadJson(const std::filesystem::path& path);  // up to 1 GiB; errors with file:line:column
-Result<void> WriteJson(const std::filesystem::path& path,
-                       const Json& json);  // through OutputFile, two spaces, lists of values on one line, final newline
+// Through OutputFile, two spaces, lists of values on one line, final newline.
+Result<void> WriteJson(const std::filesystem::path& path, const Json& json);
+
+// Bytes as text (RFC 4648, section 4): padded, without blanks or line ends; up to 1 GiB.
+std::string ToBase64(std::string_view bytes);
+Result<std::string> FromBase64(std::string_view text);  // says at which character the text is none
 
 }  // namespace scancal

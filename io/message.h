@@ -1,5 +1,7 @@
-// The words that error messages are made of.
+// The words that error messages are made of, and places in a text. Everything inside is UTF-8.
 #pragma once
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,5 +21,14 @@ std::string Nearest(std::string_view word, const std::vector<std::string>& candi
 std::string Suggestion(std::string_view word, const std::vector<std::string>& known);
 
 std::string SystemMessage(int error_number);  // No such file or directory
+
+std::optional<size_t> FirstInvalidUtf8(std::string_view text);  // offset of the first byte that is not UTF-8
+size_t CountCharacters(std::string_view text);                  // of UTF-8 text
+std::string_view WithoutByteOrderMark(std::string_view text);
+
+struct TextPlace {
+  size_t line = 1, column = 1;  // 1-based; the column counts characters
+};
+TextPlace PlaceOf(std::string_view text, size_t offset);
 
 }  // namespace scancal

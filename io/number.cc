@@ -46,4 +46,10 @@ ParsedNumber ParseNumber(std::string_view text) {
   return {NumberKind::kNumber, value};
 }
 
+const char* Expectation(NumberKind kind) {
+  return kind == NumberKind::kInfinite   ? ", expected a finite number; a missing point is nan or empty"
+         : kind == NumberKind::kTooLarge ? ", expected a number within +-1.8e308"
+                                         : ", expected a number";
+}
+
 }  // namespace scancal

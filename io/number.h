@@ -28,6 +28,9 @@ struct ParsedNumber {
 // Any text, blanks or a pair of quotes around it are no part of it. Too small for a double (1e-400) is 0.
 ParsedNumber ParseNumber(std::string_view text);
 
+// ", expected a finite number; a missing point is nan or empty", behind what was found.
+const char* Expectation(NumberKind kind);
+
 inline std::string_view WithoutBlanks(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r";
   const size_t first = text.find_first_not_of(kBlanks);

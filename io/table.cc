@@ -3,11 +3,9 @@
 #include <limits>
 #include <stdexcept>
 #include <utility>
-#include "io/csv_fields.h"
+#include "io/delimited.h"
 #include "io/message.h"
-#include "io/scan_columns.h"
-#include "io/text_lines.h"
-#include "io/utf8.h"
+#include "io/scan.h"
 
 namespace scancal {
 

@@ -5,7 +5,6 @@
 #include <sstream>
 #include <utility>
 #include "io/message.h"
-#include "io/utf8.h"
 
 namespace scancal {
 namespace {

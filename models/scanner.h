@@ -7,8 +7,7 @@
 #include <vector>
 #include "io/dataset.h"
 #include "io/json_file.h"
-#include "io/point_cloud.h"
-#include "io/point_list.h"
+#include "io/points.h"
 #include "io/result.h"
 #include "solver/calibration.h"
 #include "solver/comparison.h"

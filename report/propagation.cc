@@ -1,7 +1,7 @@
 #include "report/propagation.h"
 #include <fmt/format.h>
 #include <cmath>
-#include <numbers>
+#include "io/units.h"
 #include "report/text_table.h"
 
 namespace scancal {
@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kAxes[] = {"X", "Y", "Z"};
 
-double Shown(double value, Unit unit) { return unit == Unit::kRad ? value / (std::numbers::pi / 180) : value; }
+double Shown(double value, Unit unit) { return unit == Unit::kRad ? value / kDegree : value; }
 const char* ShownUnit(Unit unit) { return unit == Unit::kRad ? "deg" : Name(unit); }
 
 std::string PointTable(const Propagation& propagation) {

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include "io/units.h"
 #include "report/text_table.h"
 #include "report/uncertainty_text.h"
 
@@ -66,8 +66,8 @@ std::string VolumeText(const NumberTable& volume) {
     text += " to " + to + " mm, largest at";
     for (size_t k = 0; k < volume.columns.size() && volume.columns[k] != "X"; ++k) {
       const bool angle = volume.units[k] == Unit::kRad;
-      text += (k ? ", " : " ") + volume.columns[k] + " = " +
-              Significant(angle ? (*most)[k] * 180 / std::numbers::pi : (*most)[k], 3) + (angle ? " deg" : " mm");
+      text += (k ? ", " : " ") + volume.columns[k] + " = " + Significant(angle ? (*most)[k] / kDegree : (*most)[k], 3) +
+              (angle ? " deg" : " mm");
     }
   } else {
     text += " mm throughout";

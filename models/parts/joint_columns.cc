@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include "io/units.h"
 
 namespace scancal {
 namespace {
@@ -36,12 +37,11 @@ Result<void> CheckJoints(const Table& table, size_t joints) {
       largest = std::max(largest, std::abs(angles[row]));
     }
   }
-  constexpr double kDegree_rad = kTurn_rad / 360;
-  if (joints > 0 && largest <= kTurn_rad * kDegree_rad)
+  if (joints > 0 && largest <= kTurn_rad * kDegree)
     return Error{
         fmt::format("{}: all joint angles lie within {:.3g} deg, expected a robot that moves; are these "
                     "radians? See units: angle, or name the columns q1_rad ...",
-                    table.name(), largest / kDegree_rad)};
+                    table.name(), largest / kDegree)};
   return {};
 }
 

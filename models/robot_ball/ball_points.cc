@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <Eigen/SVD>
 #include <cmath>
-#include "io/scan_reader.h"
+#include "io/scan.h"
 #include "models/parts/robust_sphere.h"
 
 namespace scancal {
@@ -18,11 +18,11 @@ Result<Points> ReadPoints(const std::filesystem::path& path, const Units& units)
     format.columns.push_back({axis, Dimension::kLength});
     format.npy_columns.emplace_back(axis);
   }
-  SCANCAL_ASSIGN_OR_RETURN(ScanReader reader, ScanReader::Open(format));
+  SCANCAL_ASSIGN_OR_RETURN(const auto reader, ScanReader::Open(format));
   Points points;
   ScanBatch batch;
   for (;;) {
-    SCANCAL_ASSIGN_OR_RETURN(const bool more, reader.Next(&batch));
+    SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
     if (!more) return points;
     const auto x = static_cast<size_t>(batch.Find("x")), y = static_cast<size_t>(batch.Find("y")),
                z = static_cast<size_t>(batch.Find("z"));

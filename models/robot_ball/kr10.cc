@@ -1,13 +1,9 @@
 #include "models/robot_ball/kr10.h"
 #include <Eigen/SVD>
-#include <numbers>
+#include "io/units.h"
 
 namespace scancal {
-namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-
-}  // namespace
+namespace {}  // namespace
 
 std::vector<Link> Kr10Links() {
   constexpr double kQuarter = 90 * kDegree;

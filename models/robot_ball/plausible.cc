@@ -3,9 +3,9 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include "io/message.h"
+#include "io/units.h"
 #include "models/parts/declared_links.h"
 
 namespace scancal {
@@ -47,7 +47,7 @@ Result<void> CheckTurns(const RobotData& data, const std::string& where, std::ve
     return Error{
         fmt::format("{}: within each station the flange turns by {:.2g} deg only, which leaves the translation "
                     "of the hand-eye open; expected poses that turn about two axes, by tens of degrees",
-                    where, turn[0] * 180 / std::numbers::pi)};
+                    where, turn[0] / kDegree)};
   if (turn[2] < kLeastTurn_rad) {
     const Eigen::Vector3d axis = svd.matrixV().col(2);
     warnings->push_back(

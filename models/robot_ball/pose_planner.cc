@@ -1,13 +1,11 @@
 #include "models/robot_ball/pose_planner.h"
 #include <cmath>
-#include <numbers>
+#include "io/units.h"
 #include "models/robot_ball/inverse_kinematics.h"
 #include "models/robot_ball/kr10.h"
 
 namespace scancal {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 bool WithinLimits(const std::vector<double>& joints) {
   const auto limits = Kr10Limits();

@@ -1,14 +1,13 @@
 #include "models/robot_ball/simulate.h"
 #include <glog/logging.h>
 #include <cmath>
-#include <numbers>
+#include "io/units.h"
 #include "models/robot_ball/hand_eye.h"
 #include "models/robot_ball/pose_planner.h"
 
 namespace scancal {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kBallDiameter = 12.70;  // mm
 // Poses of the stations have the streams 1, 2, ... of the seed, what is measured there those of the noise seed.
 constexpr uint64_t kArtifactStream = uint64_t{1} << 32, kScaleStream = uint64_t{2} << 32,

@@ -1,15 +1,14 @@
 #include "models/robot_ball/write_simulated.h"
 #include <fmt/format.h>
 #include <cmath>
-#include <numbers>
 #include "io/json_file.h"
 #include "io/output_file.h"
+#include "io/units.h"
 #include "models/robot_ball/gauge.h"
 
 namespace scancal {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr const char* kScaleBalls[] = {"scale_a", "scale_b"};
 
 Result<void> CheckNumbers(const RobotScene& scene) {

@@ -4,9 +4,9 @@
 #include <iterator>
 #include <regex>
 #include <sstream>
+#include "io/delimited.h"
 #include "io/message.h"
 #include "io/number.h"
-#include "io/text_lines.h"
 #include "models/selftest/known.h"
 
 namespace scancal {

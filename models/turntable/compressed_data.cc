@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include "io/base64.h"
-#include "io/hash.h"
+#include "io/input_file.h"
+#include "io/json_file.h"
 
 namespace scancal {
 namespace {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include "io/units.h"
 #include "models/parts/median.h"
 #include "models/parts/robust_line.h"
 #include "models/turntable/raw_profiles.h"
@@ -16,7 +17,6 @@ constexpr double kOffLine = 6;  // robust standard deviations: two points in 1e9
 constexpr size_t kFewestForRobust = 5;
 constexpr double kRounding = 1e-7;              // of a profile's extent: what is nearer to its line is on it
 constexpr double kImplausibleLength_mm = 50e3;  // no plate is seen from farther away
-constexpr double kDegree = std::numbers::pi / 180;
 const char kReasonOffLine[] = "off the line of their profile", kReasonOffPlane[] = "off the plane of their target";
 
 double Extent(const RawProfile& profile) {

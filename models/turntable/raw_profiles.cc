@@ -120,12 +120,12 @@ SensorColumns ToSensor(double sense, const ScanBatch& batch) {
 }
 
 Result<RawScan> ReadRawScan(const ScanDeclaration& scan, double sense) {
-  SCANCAL_ASSIGN_OR_RETURN(ScanReader reader, ScanReader::Open(scan.format));
+  SCANCAL_ASSIGN_OR_RETURN(const auto reader, ScanReader::Open(scan.format));
   Progress progress("reading " + scan.scan);
   Gatherer gatherer(scan.format.path);
   ScanBatch batch;
   for (;;) {
-    SCANCAL_ASSIGN_OR_RETURN(const bool more, reader.Next(&batch));
+    SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
     if (!more) break;
     const SensorColumns points = ToSensor(sense, batch);
     SCANCAL_ASSIGN_OR_RETURN(const std::vector<char> kept, Kept(scan, batch, points));
@@ -136,10 +136,10 @@ Result<RawScan> ReadRawScan(const ScanDeclaration& scan, double sense) {
                                            points.y[i], points.z[i],
                                            points.range.empty() ? nullptr : &points.range[i]));
     }
-    progress.Show(static_cast<double>(reader.bytes_read()) /
-                  static_cast<double>(std::max<int64_t>(1, reader.bytes_total())));
+    progress.Show(static_cast<double>(reader->bytes_read()) /
+                  static_cast<double>(std::max<int64_t>(1, reader->bytes_total())));
   }
-  RawScan result{scan.name, gatherer.Take(), static_cast<double>(reader.missing()), 0, ""};
+  RawScan result{scan.name, gatherer.Take(), static_cast<double>(reader->missing()), 0, ""};
   if (result.profiles.empty())
     return Error{scan.format.path.string() + ": target " + scan.name + ": no point is left; widen its keep: intervals"};
   if (!gatherer.by_key() && LooksShuffled(result.profiles))

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+#include "io/units.h"
 #include "solver/random.h"
 
 namespace scancal {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kStandoff = 75;                         // mm from the profiler's zero to the plate, straight ahead
 constexpr double kSpike = 30;                            // mm
 constexpr double kNearestWall = 30, kFarthestWall = 60;  // mm behind the plate

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 #include "io/result.h"
+#include "io/units.h"
 #include "models/turntable.h"
 #include "models/turntable/plate_form.h"
 #include "solver/grid_search.h"
@@ -15,13 +16,13 @@ namespace scancal {
 struct TurntableScene {
   TurntablePose pose{123, 409, 0, 0, 0, 0};
   int placements = 3;
-  int profiles = 200, points = 200;          // per placement, per profile
-  double sweep = 30 * 0.017453292519943295;  // rad, from -sweep/2 to sweep/2
-  double line_length = 200;                  // mm, along z
-  double noise_y = 0.05;                     // mm, standard deviation along depth
-  double line_correlation = 1;               // points: integrated correlation length of that noise; 1 = white
-  double encoder_jitter = 0;                 // rad, one error a profile
-  double form = 0;                           // mm rms: smooth deviation of the plate over what the scan sees of it
+  int profiles = 200, points = 200;  // per placement, per profile
+  double sweep = 30 * kDegree;       // rad, from -sweep/2 to sweep/2
+  double line_length = 200;          // mm, along z
+  double noise_y = 0.05;             // mm, standard deviation along depth
+  double line_correlation = 1;       // points: integrated correlation length of that noise; 1 = white
+  double encoder_jitter = 0;         // rad, one error a profile
+  double form = 0;                   // mm rms: smooth deviation of the plate over what the scan sees of it
   FormKind form_kind = FormKind::kModes;
   bool one_plate = false;                     // the same form in every placement, not one of its own
   double outliers = 0;                        // share of points that are spikes within +-30 mm of the plate

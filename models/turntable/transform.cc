@@ -17,12 +17,12 @@ Result<int64_t> TransformTurntable(const Dataset& dataset, const Calibration& ca
   for (ScanDeclaration scan : declaration.scans) {
     if (!done.insert(scan.format.path.lexically_normal()).second) continue;
     scan.format.lines.reset();
-    SCANCAL_ASSIGN_OR_RETURN(ScanReader reader, ScanReader::Open(scan.format));
+    SCANCAL_ASSIGN_OR_RETURN(const auto reader, ScanReader::Open(scan.format));
     Progress progress("transforming " + scan.scan);
     ScanBatch batch;
     std::vector<std::array<double, 3>> transformed;
     for (;;) {
-      SCANCAL_ASSIGN_OR_RETURN(const bool more, reader.Next(&batch));
+      SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
       if (!more) break;
       const SensorColumns sensor = ToSensor(declaration.sense, batch);
       transformed.clear();
@@ -32,8 +32,8 @@ Result<int64_t> TransformTurntable(const Dataset& dataset, const Calibration& ca
       }
       SCANCAL_RETURN_IF_ERROR(cloud->Write(transformed, number));
       points += static_cast<int64_t>(transformed.size());
-      progress.Show(static_cast<double>(reader.bytes_read()) /
-                    static_cast<double>(std::max<int64_t>(1, reader.bytes_total())));
+      progress.Show(static_cast<double>(reader->bytes_read()) /
+                    static_cast<double>(std::max<int64_t>(1, reader->bytes_total())));
     }
     ++number;
   }

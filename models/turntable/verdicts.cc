@@ -2,13 +2,12 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include "io/message.h"
+#include "io/units.h"
 
 namespace scancal {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kPerpendicular = 1 * kDegree;  // a plate's normal nearer to the axis tells nothing of M and N
 constexpr double kApart = 5 * kDegree;          // two placements are different
 constexpr double kNarrowSweep = 5 * kDegree;

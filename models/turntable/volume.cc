@@ -3,7 +3,7 @@
 #include <glog/logging.h>
 #include <algorithm>
 #include <limits>
-#include <numbers>
+#include "io/units.h"
 #include "models/turntable/calibrated_turntable.h"
 
 namespace scancal {
@@ -49,7 +49,6 @@ double ScannedVolume::Eta(double depth) const {
 }
 
 std::string ScannedVolume::Beyond(double at_alpha, double at_y, double at_z) const {
-  constexpr double kDegree = std::numbers::pi / 180;
   const auto told = [](const char* name, double value, const std::array<double, 2>& range, const char* unit) {
     return fmt::format("{} = {:.4g} {} (scanned: {:.4g} to {:.4g} {})", name, value, unit, range[0], range[1], unit);
   };

@@ -6,12 +6,11 @@
 #include "io/json_file.h"
 #include "io/output_file.h"
 #include "io/progress.h"
+#include "io/units.h"
 #include "models/turntable/simulate.h"
 
 namespace scancal {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 Result<void> CheckScene(const TurntableScene& scene, const std::vector<SimulatedPlacement>& placements) {
   for (const SimulatedPlacement& placement : placements)

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 #include <chrono>
-#include <numbers>
+#include "io/units.h"
 #include "solver/weigh.h"
 #include "tests/bench/comparisons.h"
 
@@ -19,7 +19,7 @@ void Consider(int quantity, double u, Problem* problem) {
 void CompareMonteCarlo(Table* table) {
   Say("Monte Carlo");
   TurntableScene scene;  // as data/sample
-  scene.encoder_jitter = 0.002 * std::numbers::pi / 180;
+  scene.encoder_jitter = 0.002 * kDegree;
   const std::vector<Placement> placements = Compress(SimulateTurntable(scene));
   const Start start = SearchStart(placements);
   Problem problem = BuildProblem(placements, start, Turntable::Residuals::kDepth);

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <fstream>
 #include <sstream>
-#include "io/scan_reader.h"
+#include "io/scan.h"
 #include "tests/bench/comparisons.h"
 
 namespace scancal::bench {
@@ -31,7 +31,7 @@ size_t ReadAll(const std::filesystem::path& file) {
   ScanBatch batch;
   size_t points = 0;
   for (;;) {
-    const auto more = reader->Next(&batch);
+    const auto more = (*reader)->Next(&batch);
     CHECK(more.ok()) << more.error().message;
     if (!*more) return points;
     points += batch.size();

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
+#include "io/units.h"
 #include "models/robot_ball/hand_eye.h"
 #include "models/robot_ball/robot_fit.h"
 #include "models/robot_ball/simulate.h"
@@ -53,7 +53,7 @@ RobotBall WithPriors(const RobotData& data, const RobotScene& scene) {
       if (beta && !NextAxisIsParallel(data.links[link])) continue;
       if (beta && link + 1 == data.links.size()) continue;
       quantity.role = Role::kEstimate;
-      quantity.u = quantity.unit == Unit::kMm ? 0.5 : 0.1 * std::numbers::pi / 180;
+      quantity.u = quantity.unit == Unit::kMm ? 0.5 : 0.1 * kDegree;
     }
   return model;
 }

@@ -1,5 +1,5 @@
 // Damaged declarations, seen from outside: dataset.yaml and its units.
-#include <numbers>
+#include "io/units.h"
 #include "tests/cli/bad_input.h"
 
 namespace scancal {
@@ -70,7 +70,7 @@ TEST_F(BadDeclarationTest, DegreesDeclaredAsRadians) {
 }
 
 TEST_F(BadDeclarationTest, RadiansDeclaredAsDegrees) {
-  ScaleColumns(std::numbers::pi / 180, 1);
+  ScaleColumns(kDegree, 1);
   ExpectRefused(AllOf(HasSubstr("span 0.524 deg"), HasSubstr("declare angle: rad")));
 }
 

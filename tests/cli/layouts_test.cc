@@ -1,16 +1,14 @@
 // The same measurement written in other ways gives the same result.
 #include <gmock/gmock.h>
 #include <algorithm>
-#include <numbers>
 #include <random>
+#include "io/units.h"
 #include "tests/cli/data_set.h"
 
 namespace scancal {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 class LayoutsTest : public CliTest {
  protected:

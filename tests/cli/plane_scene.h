@@ -2,10 +2,10 @@
 #pragma once
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
+#include "io/units.h"
 #include "tests/cli/data_set.h"
 
 namespace scancal {
@@ -24,8 +24,7 @@ struct PlaneScene {
 // Depth of the plane along the profiler's line of sight, from eq. (7): x = M cos a - (N + y) sin a, y = -M sin a - (N +
 // y) cos a.
 inline double DepthOfPlane(const PlaneScene& scene, const PlaneOfTest& plane, double angle, double z) {
-  const double degree = std::numbers::pi / 180, a = angle * degree, turn = plane.turn * degree,
-               lean = plane.lean * degree;
+  const double a = angle * kDegree, turn = plane.turn * kDegree, lean = plane.lean * kDegree;
   const std::array<double, 3> n = {std::sin(turn) * std::cos(lean), -std::cos(turn) * std::cos(lean), std::sin(lean)};
   const double at_zero = n[0] * (scene.M * std::cos(a) - scene.N * std::sin(a)) +
                          n[1] * (-scene.M * std::sin(a) - scene.N * std::cos(a)) + n[2] * z;

@@ -1,6 +1,7 @@
 // scancal propagate: points and distances with their uncertainty.
 #include <gmock/gmock.h>
 #include <cmath>
+#include "io/units.h"
 #include "tests/cli/data_set.h"
 
 namespace scancal {
@@ -10,8 +11,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
-
-constexpr double kDegree = 0.017453292519943295;
 
 class PropagateTest : public CliTest {
  protected:
@@ -88,11 +87,10 @@ TEST_F(PropagateTest, PointsMayBeGivenInManyWays) {
   // What was written is a table of points.
   EXPECT_EQ(Propagate({"--points_file=" + Path("a.csv").string(), "--out=" + Path("b.csv").string()}).exit_code, 0);
   EXPECT_EQ(ReadWhole(Path("b.csv")), ReadWhole(Path("a.csv")));
-  const double one_degree = kDegree;
-  EXPECT_EQ(Propagate({"--units=m,rad", "--point=" + std::to_string(one_degree) + ",0.05,0",
-                       "--out=" + Path("c.csv").string()})
-                .exit_code,
-            0);
+  EXPECT_EQ(
+      Propagate({"--units=m,rad", "--point=" + std::to_string(kDegree) + ",0.05,0", "--out=" + Path("c.csv").string()})
+          .exit_code,
+      0);
   EXPECT_NEAR(CellOf(Cells(Path("c.csv")), 1, "X_mm"), CellOf(table, 1, "X_mm"), 1e-3);
 }
 

@@ -1,5 +1,6 @@
 // A result holds all it was computed from: refine takes calibration.json in place of the data set.
 #include <gmock/gmock.h>
+#include "io/units.h"
 #include "tests/cli/data_set.h"
 
 namespace scancal {
@@ -89,7 +90,7 @@ TEST_F(RecomputeTest, OfALidar) {
   for (const std::string& name : kNames) {
     std::vector<std::vector<double>> rows;
     for (const ScanPoint& p : ReadPoints(data / (name + ".csv")))
-      rows.push_back({p.angle, std::atan2(p.z, p.y) * 180 / M_PI, std::hypot(p.y, p.z)});
+      rows.push_back({p.angle, std::atan2(p.z, p.y) / kDegree, std::hypot(p.y, p.z)});
     WriteTable(data / (name + ".csv"), "angle,bearing,range", rows);
   }
   const Json old = Old(data, 2);  // its noise is along depth, not along the range: a lack of fit that is found

@@ -1,6 +1,7 @@
 // Roles of the parameters: estimate, with a prior, consider, hold; and the residuals.
 #include <gmock/gmock.h>
 #include <map>
+#include "io/units.h"
 #include "tests/cli/data_set.h"
 
 namespace scancal {
@@ -10,8 +11,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
-
-constexpr double kDegree = 0.017453292519943295;
 
 class RolesTest : public CliTest {
  protected:

@@ -1,5 +1,6 @@
 // simulate, then refine: the truth comes back.
 #include <gmock/gmock.h>
+#include "io/units.h"
 #include "tests/cli/data_set.h"
 
 namespace scancal {
@@ -40,7 +41,6 @@ TEST_F(SimulateTest, NoiselessDataGiveTheTilts) {
   const Json result = Refined(data);
   EXPECT_NEAR(ValueOf(result, "M"), 123, 1e-8);
   EXPECT_NEAR(ValueOf(result, "N"), 409, 1e-8);
-  constexpr double kDegree = 0.017453292519943295;
   EXPECT_NEAR(ValueOf(result, "tilt_x"), 0.4 * kDegree, 1e-11);  // rad
   EXPECT_NEAR(ValueOf(result, "tilt_y"), -0.7 * kDegree, 1e-11);
 }

@@ -1,11 +1,11 @@
 #include "tests/coverage/rows.h"
 #include <fmt/format.h>
-#include <numbers>
+#include "io/units.h"
 
 namespace scancal::coverage {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180, kArcsecond = kDegree / 3600, kMicron = 1e-3;
+constexpr double kArcsecond = kDegree / 3600, kMicron = 1e-3;
 
 class Scenes {
  public:

@@ -4,7 +4,8 @@
 #include <sys/stat.h>
 #include <cmath>
 #include <thread>
-#include "io/scan_reader.h"
+#include "io/scan.h"
+#include "io/units.h"
 #include "tests/io/scan_test.h"
 
 namespace scancal {
@@ -14,8 +15,6 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr double kDegree = 0.017453292519943295;
 
 class ScanCsvTest : public ::testing::Test {
  protected:
@@ -124,25 +123,25 @@ TEST_F(ScanCsvTest, LargeFilesComeInBatchesAndTellTheirProgress) {
   for (int i = 0; i < kPoints; ++i) contents += "1.5," + std::to_string(i) + ",2.25\n";
   auto reader = ScanReader::Open(Format(contents));
   ASSERT_TRUE(reader.ok()) << reader.error().message;
-  EXPECT_EQ(reader->bytes_total(), static_cast<int64_t>(contents.size()));
+  EXPECT_EQ((*reader)->bytes_total(), static_cast<int64_t>(contents.size()));
   ScanBatch batch;
   double expected = 0;
   size_t batches = 0;
   int64_t bytes_before = 0;
   for (;; ++batches) {
-    const auto more = reader->Next(&batch);
+    const auto more = (*reader)->Next(&batch);
     ASSERT_TRUE(more.ok()) << more.error().message;
     if (!*more) break;
     ASSERT_LE(batch.size(), 100'000U);
-    EXPECT_GT(reader->bytes_read(), bytes_before);
-    bytes_before = reader->bytes_read();
+    EXPECT_GT((*reader)->bytes_read(), bytes_before);
+    bytes_before = (*reader)->bytes_read();
     for (const double y : batch.columns[1]) ASSERT_EQ(y, expected++);
   }
   EXPECT_EQ(expected, kPoints);
   EXPECT_EQ(batches, 4U);
   EXPECT_EQ(batch.size(), 0U);
-  EXPECT_EQ(reader->bytes_read(), reader->bytes_total());
-  EXPECT_FALSE(*reader->Next(&batch));
+  EXPECT_EQ((*reader)->bytes_read(), (*reader)->bytes_total());
+  EXPECT_FALSE(*(*reader)->Next(&batch));
 }
 
 TEST_F(ScanCsvTest, ALineLongerThanABlockIsRead) {

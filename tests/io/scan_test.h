@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 #include <vector>
-#include "io/scan_reader.h"
+#include "io/scan.h"
 #include "tests/io/temporary_folder.h"
 
 namespace scancal {
@@ -23,10 +23,10 @@ inline Scan ReadAll(const ScanFormat& format) {
   }
   ScanBatch batch;
   for (;;) {
-    const auto more = reader->Next(&batch);
+    const auto more = (*reader)->Next(&batch);
     scan.names = batch.names;
     scan.columns.resize(batch.columns.size());
-    scan.missing = reader->missing();
+    scan.missing = (*reader)->missing();
     if (!more.ok()) scan.error = more.error().message;
     if (!more.ok() || !*more) return scan;
     for (size_t i = 0; i < batch.columns.size(); ++i) {

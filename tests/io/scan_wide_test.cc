@@ -1,6 +1,7 @@
 // Scans with one profile per line.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include "io/units.h"
 #include "tests/io/scan_test.h"
 
 namespace scancal {
@@ -11,8 +12,6 @@ using ::testing::DoubleEq;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr double kDegree = 0.017453292519943295;
 
 class ScanWideTest : public ::testing::Test {
  protected:
@@ -97,7 +96,7 @@ TEST_F(ScanWideTest, ManyProfilesComeInBatches) {
   auto reader = ScanReader::Open(Format(contents));
   ScanBatch batch;
   size_t points = 0, batches = 0;
-  for (; *reader->Next(&batch); ++batches) {
+  for (; *(*reader)->Next(&batch); ++batches) {
     points += batch.size();
     EXPECT_LT(batch.size(), 100'200U);
   }

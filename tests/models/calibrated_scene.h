@@ -4,13 +4,12 @@
 #include <cmath>
 #include <utility>
 #include <vector>
+#include "io/units.h"
 #include "models/turntable/calibrated_turntable.h"
 #include "models/turntable/turntable_scanner.h"
 #include "tests/models/turntable_scene.h"
 
 namespace scancal {
-
-inline constexpr double kDegree = M_PI / 180;
 
 // Standard uncertainties of what is considered, each large enough to show beside the noise.
 inline const std::vector<std::pair<Turntable::Index, double>> kConsidered = {

@@ -2,8 +2,8 @@
 #include "models/turntable/compressed_data.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include "io/base64.h"
-#include "io/hash.h"
+#include "io/input_file.h"
+#include "io/json_file.h"
 #include "tests/models/turntable_scene.h"
 
 namespace scancal {

@@ -2,7 +2,7 @@
 #include "models/turntable/declaration.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <numbers>
+#include "io/units.h"
 #include "tests/io/temporary_folder.h"
 
 namespace scancal {
@@ -14,7 +14,6 @@ using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr char kTop[] = "scancal: 1\nmodel: turntable\nunits: {length: mm, angle: deg}\n";
 constexpr char kRotation[] = "rotation: clockwise\n";
 constexpr char kSearch[] = "search: {M: [110, 130], N: [395, 425], step: 1}\n";

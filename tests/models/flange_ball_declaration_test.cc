@@ -1,6 +1,6 @@
 // What a dataset.yaml with a ball on the flange may say, and what it is told if it says something else.
 #include <gmock/gmock.h>
-#include <numbers>
+#include "io/units.h"
 #include "models/flange_ball/declaration.h"
 #include "tests/io/temporary_folder.h"
 
@@ -10,8 +10,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 class FlangeBallDeclarationTest : public ::testing::Test {
  protected:

@@ -1,6 +1,6 @@
 // Noise along the laser line moves where points were measured, and must not look like a form of the plate.
 #include <gtest/gtest.h>
-#include <numbers>
+#include "io/units.h"
 #include "models/turntable/raw_profiles.h"
 #include "models/turntable/simulate.h"
 #include "models/turntable/turntable_scanner.h"
@@ -28,7 +28,7 @@ std::vector<RawScan> ScansWithNoiseZ(const TurntableScene& scene, double noise_z
 TEST(NoiseAlongTheLine, IsNoForm) {
   TurntableScene scene;
   scene.points = 100;
-  scene.encoder_jitter = 0.002 * std::numbers::pi / 180;
+  scene.encoder_jitter = 0.002 * kDegree;
   TurntableDeclaration declaration;
   declaration.search = SearchAround(scene.pose, 20, 30);
   for (uint64_t seed = 1; seed <= 3; ++seed) {

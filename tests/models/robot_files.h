@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <vector>
+#include "io/units.h"
 #include "models/robot_ball/declaration.h"
 #include "tests/io/temporary_folder.h"
 
@@ -104,7 +105,6 @@ class RobotFilesTest : public ::testing::Test {
     }
   }
 
-  static constexpr double kDegree = 0.017453292519943295;
   static inline const std::vector<std::string> kNames = {"A", "B", "C", "D", "E"};
   static inline const std::vector<Eigen::Vector3d> kCentres = {
       {0, 0, 0}, {200, 10, 0}, {30, 150, 20}, {120, 90, 60}, {-70, 110, -40}};

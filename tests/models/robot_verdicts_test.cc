@@ -1,6 +1,6 @@
 // What a robot's calibration says of data that cannot be right.
 #include <gmock/gmock.h>
-#include <numbers>
+#include "io/units.h"
 #include "models/robot_ball/hand_eye.h"
 #include "models/robot_ball/simulate.h"
 #include "models/robot_ball/spacing.h"
@@ -40,7 +40,7 @@ TEST(RobotVerdicts, AWrongJointAngleIsFoundByItsPose) {
   for (const double degrees : {1.0, 10.0}) {
     RobotData data = Simulated(1);
     RobotBall::View& pose = data.stations[3].views[2];
-    pose.joints[2] += degrees * std::numbers::pi / 180;
+    pose.joints[2] += degrees * kDegree;
     EXPECT_THAT(
         Doubts(data, std::vector(10, 100.0)),
         ElementsAre(HasSubstr("pose " + pose.name + " of station " + data.stations[3].name + ": its balls lie")));

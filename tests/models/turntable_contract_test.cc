@@ -1,4 +1,5 @@
 // The turntable, with both residuals and for a negative M, passes the contract.
+#include "io/units.h"
 #include "models/models.h"
 #include "models/turntable/verdicts.h"
 #include "solver/random.h"
@@ -19,7 +20,7 @@ struct TurntableCase {
     TurntableScene scene;
     scene.profiles = 40;
     scene.points = 12;
-    scene.sweep = 40 * M_PI / 180;
+    scene.sweep = 40 * kDegree;
     scene.pose.M *= kSignOfM;
     scene.pose.tilt_x = kTilts ? 0.01 : 0;
     scene.pose.tilt_y = kTilts ? -0.02 : 0;

@@ -2,13 +2,12 @@
 #pragma once
 #include <gtest/gtest.h>
 #include <cmath>
-#include <numbers>
+#include "io/units.h"
 #include "models/turntable/turntable_scanner.h"
 #include "solver/random.h"
 
 namespace scancal::turntable_figures {
 
-inline constexpr double kDegree = std::numbers::pi / 180;
 inline constexpr int kPoints = 40;  // five in every segment
 
 struct Point {

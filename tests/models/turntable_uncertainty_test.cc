@@ -1,6 +1,7 @@
 // The uncertainties of the turntable against simulated repetitions, and the bias that the depth residual does not have.
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
+#include "io/units.h"
 #include "models/turntable/turntable_scanner.h"
 #include "solver/uncertainty/covariance.h"
 #include "solver/uncertainty/jackknife.h"
@@ -8,8 +9,6 @@
 
 namespace scancal {
 namespace {
-
-constexpr double kDegree = M_PI / 180;
 
 struct Study {
   Eigen::Vector2d mean = {0, 0}, scatter = {0, 0};  // of the errors of M, N, mm

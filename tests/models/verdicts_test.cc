@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cmath>
-#include <numbers>
 #include <optional>
+#include "io/units.h"
 #include "solver/random.h"
 
 namespace scancal {
@@ -14,7 +14,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr double kDegree = std::numbers::pi / 180;
 const TurntablePose kTruth = {123, 409, 0, 0, 0, 0};
 const Units kUnits;  // mm, deg
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <sstream>
+#include "io/units.h"
 #include "models/parts/robust_sphere.h"
 #include "models/robot_ball.h"
 #include "solver/model.h"
@@ -48,7 +48,6 @@ class LineProfilerTest : public ::testing::Test {
   nlohmann::json Json(const std::string& name) const { return nlohmann::json::parse(std::ifstream(folder_ / name)); }
   // x y z in mm, w p r in degrees: R = Rz(r) Ry(p) Rx(w).
   static Eigen::Isometry3d PoseOfController(const std::vector<double>& numbers) {
-    constexpr double kDegree = std::numbers::pi / 180;
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.linear() = (Eigen::AngleAxisd(numbers[5] * kDegree, Eigen::Vector3d::UnitZ()) *
                      Eigen::AngleAxisd(numbers[4] * kDegree, Eigen::Vector3d::UnitY()) *

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <limits>
+#include "io/units.h"
 
 namespace scancal {
 namespace {
@@ -25,7 +26,7 @@ Propagation SomePropagation() {
   propagation.reading = {"alpha", "y"};
   propagation.units = {Unit::kRad, Unit::kMm};
   const Eigen::Matrix3d covariance{{0.01, -0.002, 0}, {-0.002, 0.04, 0.003}, {0, 0.003, 0}};
-  propagation.points = {{{10 * M_PI / 180, 50}, {100.5, -300.25, 7}, Uncertainty(covariance)},
+  propagation.points = {{{10 * kDegree, 50}, {100.5, -300.25, 7}, Uncertainty(covariance)},
                         {{-M_PI / 2, 60}, {110.5, -310.25, 7}, Uncertainty(4 * covariance)}};
   propagation.distances = {{0, 1, 14.125, Uncertainty(Eigen::MatrixXd::Constant(1, 1, 0.0025))}};
   propagation.notes = {"a note"};

@@ -1,4 +1,4 @@
-#include "io/hash.h"
+#include "io/input_file.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include "tests/io/temporary_folder.h"

@@ -2,11 +2,15 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
+#include "io/number.h"
 #include "io/result.h"
 #include "io/units.h"
 
@@ -50,20 +54,52 @@ struct ScanBatch {                           // equally long columns, in the ord
 // wrong number of fields are errors: "left.csv:1042:8: y: found "12.3.4", expected a number".
 class ScanReader {
  public:
-  static Result<ScanReader> Open(const ScanFormat& format);
-  ScanReader(ScanReader&&) noexcept;
-  ScanReader& operator=(ScanReader&&) noexcept;
-  ~ScanReader();
-  // Up to about 100,000 points; empty at the end of the file.
-  Result<bool> Next(ScanBatch* batch);  // false: nothing more
-  int64_t missing() const;              // so far
-  int64_t bytes_read() const;           // so far, for a progress bar
-  int64_t bytes_total() const;
+  static Result<std::unique_ptr<ScanReader>> Open(const ScanFormat& format);
+  virtual ~ScanReader() = default;
+  // Up to about 100,000 points; false, and none, at the end of the file.
+  virtual Result<bool> Next(ScanBatch* batch) = 0;
+  virtual int64_t bytes_read() const = 0;  // so far, for a progress bar
+  virtual int64_t bytes_total() const = 0;
+  int64_t missing() const { return missing_; }  // so far
 
- private:
-  class Impl;
-  explicit ScanReader(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+ protected:
+  static constexpr size_t kBatchPoints = 100'000;
+  int64_t missing_ = 0;
 };
+
+// The formats, each of its own; ScanReader::Open chooses.
+Result<std::unique_ptr<ScanReader>> OpenCsv(const ScanFormat& format);
+Result<std::unique_ptr<ScanReader>> OpenWideCsv(const ScanFormat& format);
+Result<std::unique_ptr<ScanReader>> OpenNpy(const ScanFormat& format);
+
+struct ChosenColumn {
+  std::string name;   // as wanted: "y"
+  size_t index = 0;   // in the file, 0-based
+  double factor = 1;  // times this: mm, rad
+};
+
+// The wanted columns that the file has, in the order of format.columns. `place`: of the header, for complaints:
+// "left.csv:1". A required one that is missing, or one that is there twice ("y" and "y_mm"): an error.
+Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const std::vector<std::string>& found,
+                                                const std::string& place);
+
+// The unit of `wanted` if `found` is its name, plain ("y") or with a unit ("y_mm"); else empty.
+std::optional<double> MatchColumn(const ScanColumn& wanted, std::string_view found, const Units& units);
+
+// The lines of the file that are wanted.
+struct LineRange {
+  int64_t first = 1, last = std::numeric_limits<int64_t>::max();
+  explicit LineRange(const ScanFormat& format) {
+    if (format.lines) std::tie(first, last) = *format.lines;
+  }
+};
+
+// The value of a missing point; without one, nan, which equals no number.
+inline double InvalidValue(const ScanFormat& format) {
+  return format.invalid.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+// "left.csv: no points": the file has none, or the wanted lines have none.
+Error NoPoints(const ScanFormat& format, int64_t lines_in_file);
 
 }  // namespace scancal

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include "io/units.h"
 #include "tests/io/scan_test.h"
 
 namespace scancal {
@@ -13,8 +14,6 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr double kDegree = 0.017453292519943295;
 
 template <class Float>
 std::string Bytes(const std::vector<Float>& values) {
@@ -106,11 +105,11 @@ TEST_F(ScanNpyTest, LargeArraysComeInBatchesAndTellTheirProgress) {
   ASSERT_TRUE(reader.ok()) << reader.error().message;
   ScanBatch batch;
   size_t points = 0, batches = 0;
-  for (; *reader->Next(&batch); ++batches) points += batch.size();
+  for (; *(*reader)->Next(&batch); ++batches) points += batch.size();
   EXPECT_EQ(points, kPoints);
   EXPECT_EQ(batches, 3U);
-  EXPECT_EQ(reader->bytes_total(), static_cast<int64_t>(contents.size()));
-  EXPECT_EQ(reader->bytes_read(), reader->bytes_total());
+  EXPECT_EQ((*reader)->bytes_total(), static_cast<int64_t>(contents.size()));
+  EXPECT_EQ((*reader)->bytes_read(), (*reader)->bytes_total());
 }
 
 TEST_F(ScanNpyTest, InfinityIsAnErrorWithItsRow) {

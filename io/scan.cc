@@ -1,5 +1,7 @@
-#include "io/scan_columns.h"
+#include "io/scan.h"
 #include <algorithm>
+#include <cctype>
+#include <utility>
 #include "io/message.h"
 
 namespace scancal {
@@ -16,6 +18,13 @@ std::string PossibleNames(const ScanColumn& wanted) {
       break;
   }
   return "'" + wanted.name + "'";
+}
+
+bool IsNpy(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".npy";
 }
 
 }  // namespace
@@ -57,6 +66,24 @@ Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const 
   }
   if (chosen.empty()) return Error{place + ": found the columns " + Listed(found) + ", none of them is known"};
   return chosen;
+}
+
+Error NoPoints(const ScanFormat& format, int64_t lines_in_file) {
+  const std::string name = format.path.string();
+  if (lines_in_file == 0) return Error{name + ": no points: the file is empty"};
+  if (!format.lines) return Error{name + ": no points: found at most a header and comments, expected lines of data"};
+  return Error{name + ": no points in the lines " + std::to_string(format.lines->first) + " to " +
+               std::to_string(format.lines->second)};
+}
+
+int ScanBatch::Find(std::string_view name) const {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+Result<std::unique_ptr<ScanReader>> ScanReader::Open(const ScanFormat& format) {
+  if (format.layout) return OpenWideCsv(format);
+  return IsNpy(format.path) ? OpenNpy(format) : OpenCsv(format);
 }
 
 }  // namespace scancal

@@ -1,10 +1,13 @@
-// Points that are given by a few numbers each, typed or as a table.
+// Points of a few numbers each: read as typed or from a table, written as a cloud.
 #pragma once
+#include <array>
 #include <filesystem>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 #include "io/result.h"
-#include "io/scan_reader.h"
+#include "io/scan.h"
 
 namespace scancal {
 
@@ -19,5 +22,17 @@ Result<std::vector<std::vector<double>>> ReadPoints(const PointRequest& request,
                                                     const std::vector<ScanColumn>& columns);
 
 Result<Units> ParseUnits(const std::string& text);  // "mm,deg": one of length, one of angle
+
+// By extension: .ply (binary little endian; double x, y, z; int scan), .csv (x_mm,y_mm,z_mm,scan; round-trip digits),
+// .npy (float64, shape (points, 3)). Streaming: memory does not grow with the number of points.
+class PointCloudWriter {
+ public:
+  virtual ~PointCloudWriter() = default;
+  virtual Result<void> Write(std::span<const std::array<double, 3>> points_mm, int scan) = 0;
+  virtual Result<void> Commit() = 0;
+};
+
+// An unknown extension: an error that lists them.
+Result<std::unique_ptr<PointCloudWriter>> CreatePointCloud(const std::filesystem::path& path);
 
 }  // namespace scancal
