@@ -1,4 +1,4 @@
-// scancal_bench FOLDER [SCIPY_SCRIPT]: the comparisons of the README, measured side by side. See scripts/bench.
+// scancal_bench FOLDER [SCIPY_SCRIPT]: the comparisons of docs/speed.md, measured side by side. See scripts/bench.
 #include <fmt/format.h>
 #include <glog/logging.h>
 #include <fstream>

@@ -1,4 +1,4 @@
-// scancal_coverage [--sets=1000] [--sweep=44] [--row=NAME]: the table of the README. See scripts/coverage.
+// scancal_coverage [--sets=1000] [--sweep=44] [--row=NAME]: the table of docs/proof.md. See scripts/coverage.
 #include <fmt/format.h>
 #include <glog/logging.h>
 #include <cctype>
