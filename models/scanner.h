@@ -10,8 +10,7 @@
 #include "io/points.h"
 #include "io/result.h"
 #include "solver/calibration.h"
-#include "solver/comparison.h"
-#include "solver/propagation.h"
+#include "solver/results.h"
 #include "solver/uncertainty/resampling.h"
 
 namespace scancal {

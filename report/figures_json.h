@@ -4,7 +4,7 @@
 #include <vector>
 #include "io/json_file.h"
 #include "solver/calibration.h"
-#include "solver/comparison.h"
+#include "solver/results.h"
 
 namespace scancal {
 

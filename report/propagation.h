@@ -1,7 +1,7 @@
 // Measured points and distances with their uncertainty, for people and for programs.
 #pragma once
 #include <string>
-#include "solver/propagation.h"
+#include "solver/results.h"
 
 namespace scancal {
 

@@ -2,8 +2,7 @@
 #pragma once
 #include <string>
 #include "solver/calibration.h"
-#include "solver/comparison.h"
-#include "solver/selftest.h"
+#include "solver/results.h"
 
 namespace scancal {
 

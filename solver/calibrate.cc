@@ -3,15 +3,72 @@
 #include <cmath>
 #include <limits>
 #include "solver/judge.h"
-#include "solver/uncertainty/coverage.h"
-#include "solver/uncertainty/headline.h"
+#include "solver/uncertainty/budget.h"
+#include "solver/uncertainty/gum.h"
 #include "solver/uncertainty/jackknife.h"
 #include "solver/uncertainty/misfit.h"
 
 namespace scancal {
 namespace {
 
-constexpr double kCoverage = 0.95;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+BudgetLine Line(const std::string& source, char type, Unit unit, double u, const Eigen::VectorXd& sensitivity,
+                const Eigen::MatrixXd& covariance, double dof) {
+  return {source, type, unit, u, Plain(sensitivity), Plain(covariance.diagonal().cwiseMax(0).cwiseSqrt()), {}, dof};
+}
+
+BudgetLine Line(const Problem& problem, const Contribution& contribution, bool from_data, double dof) {
+  for (const Quantity& quantity : problem.quantities) {
+    const std::string& name = contribution.prior ? "prior of " + quantity.Source() : quantity.Source();
+    if (name == contribution.source)
+      return Line(contribution.source, from_data ? 'A' : 'B', quantity.unit, quantity.u, contribution.sensitivity,
+                  contribution.covariance, dof);
+  }
+  return {};
+}
+
+void AddShares(Headline* headline) {
+  for (BudgetLine& line : headline->budget)
+    for (size_t k = 0; k < line.contribution.size(); ++k) {
+      const auto e = static_cast<Eigen::Index>(k);
+      line.share.push_back(std::pow(line.contribution[k], 2) / headline->covariance(e, e));
+    }
+}
+
+Headline Weighted(const Problem& problem, const Variances& variances, const Budget& budget, Eigen::Index n) {
+  Headline headline{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd(n), {}};
+  std::vector<Eigen::VectorXd> shares(n, Eigen::VectorXd::Zero(std::ssize(variances.sources)));
+  for (const Contribution& contribution : budget.lines) {
+    headline.covariance += contribution.covariance;
+    const double dof = contribution.prior ? kInfinity : variances.Dof(contribution.source);
+    bool from_data = false;
+    for (size_t s = 0; s < variances.sources.size(); ++s) {
+      if (contribution.prior || variances.sources[s] != contribution.source) continue;
+      from_data = true;
+      for (Eigen::Index k = 0; k < n; ++k) shares[k][static_cast<Eigen::Index>(s)] = contribution.covariance(k, k);
+    }
+    headline.budget.push_back(Line(problem, contribution, from_data, dof));
+    headline.budget.back().random = contribution.scope == Scope::kView || contribution.scope == Scope::kPoint;
+  }
+  for (Eigen::Index k = 0; k < n; ++k) headline.dof[k] = variances.Dof(shares[k], headline.covariance(k, k));
+  return headline;
+}
+
+Headline Clustered(const Problem& problem, const Covariance& clustered, const Budget& budget, Eigen::Index n) {
+  Headline headline{clustered.matrix, Eigen::VectorXd(n), {}};
+  headline.budget.push_back(
+      Line("residuals, clustered by view", 'A', Unit::kMm, 0, Eigen::VectorXd(), clustered.matrix, clustered.dof));
+  for (const Contribution& contribution : budget.lines) {
+    if (contribution.prior || (contribution.scope != Scope::kSystem && contribution.scope != Scope::kTarget)) continue;
+    headline.covariance += contribution.covariance;
+    headline.budget.push_back(Line(problem, contribution, false, kInfinity));
+  }
+  for (Eigen::Index k = 0; k < n; ++k)
+    headline.dof[k] = clustered.dof * std::pow(headline.covariance(k, k) / clustered.matrix(k, k), 2);
+  return headline;
+}
+
 constexpr double kKnown_dof = 1e9;     // as good as infinitely many
 constexpr double kRounding_mm = 1e-9;  // a pure error below this is none
 
@@ -28,7 +85,7 @@ double DataCount(const Target& target) {
   return count;
 }
 
-// Everything between views against everything within them (Draper and Smith, Applied Regression Analysis, 2.1).
+// Everything between views against everything within them (Draper and Smith, Applied Regression Analysis, 1998, 2.1).
 LackOfFit TestFit(double sum_of_squares, double dof, const PureError& pure) {
   LackOfFit result;
   result.pure_error_sigma = pure.sigma();
@@ -119,13 +176,17 @@ void AddInfluences(const Solution& solution, Calibration* result) {
   }
 }
 
-void AddMisfits(const Solution& solution, double noise_dof, Calibration* result) {
-  for (const Misfit& misfit : TestMisfits(solution.problem, solution.fit.estimate, solution.linear, noise_dof))
-    result->misfits.push_back({misfit.source, misfit.considered, misfit.unit, misfit.size, misfit.F, misfit.dof1,
-                               misfit.dof2, misfit.p, Plain(misfit.moves)});
-}
-
 }  // namespace
+
+Headline HeadlineOf(const Solution& solution, const Covariance& clustered) {
+  const Budget budget = BudgetOf(solution.problem, solution.fit.estimate, solution.linear);
+  const Eigen::Index n = clustered.matrix.rows();
+  Headline headline = solution.variances ? Weighted(solution.problem, *solution.variances, budget, n)
+                                         : Clustered(solution.problem, clustered, budget, n);
+  headline.covariance = (headline.covariance + headline.covariance.transpose().eval()) / 2;
+  AddShares(&headline);
+  return headline;
+}
 
 double PureError::sigma() const { return dof > 0 ? std::sqrt(sum_of_squares / dof) : 0; }
 
@@ -177,10 +238,11 @@ Calibration Summarize(const Solution& solution, const PureError& pure_error) {
   const double noise_dof = solution.variances && headline.dof.size() > 0
                                ? std::max(clustered.dof, std::min(headline.dof.minCoeff(), kKnown_dof))
                                : clustered.dof;
-  if (solution.variances) AddMisfits(solution, noise_dof, &result);
+  if (solution.variances)
+    result.misfits = TestMisfits(solution.problem, solution.fit.estimate, solution.linear, noise_dof);
   for (Eigen::Index t = 0; t < jackknife.estimates.rows(); ++t)
     result.jackknife.push_back(Plain(jackknife.estimates.row(t).transpose()));
-  Judge(solution, jackknife, noise_dof, &result);
+  AddDoubts(solution, jackknife, noise_dof, &result);
   return result;
 }
 

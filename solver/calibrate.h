@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 #include "solver/calibration.h"
-#include "solver/observability.h"
+#include "solver/linearize.h"
 #include "solver/refine.h"
 #include "solver/uncertainty/covariance.h"
 #include "solver/uncertainty/variances.h"
@@ -35,6 +35,18 @@ Solution SolveWeighted(const Solution& plain, double least, const RefineOptions&
 
 // Of each view of a target, without weights and priors: in the units and the frame of the model.
 std::vector<Eigen::VectorXd> ResidualsOf(const Solution& solution, size_t target);
+
+// The uncertainty that is stated, and its budget.
+struct Headline {
+  Eigen::MatrixXd covariance;  // of the system's estimated quantities
+  Eigen::VectorXd dof;         // effective degrees of freedom of each variance (Welch-Satterthwaite, GUM G.4)
+  std::vector<BudgetLine> budget;
+};
+
+// Weighted fits: K V K' with everything random, declared or estimated, and everything that was considered; the
+// estimated variances are one block in the degrees of freedom. Equal weights: what the residuals show between views
+// (clustered), and what cannot show there because views share it.
+Headline HeadlineOf(const Solution& solution, const Covariance& clustered);
 
 // Numbers of a solution: parameters with all their uncertainties, covariance, budget, lack of fit, jackknife. u is
 // K V K' of everything that was estimated or declared where the fit is weighted; else clustered by view, and what all

@@ -1,6 +1,8 @@
 // The result as a plain value. Lengths mm, angles rad, whatever the input used.
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -10,7 +12,8 @@
 
 namespace scancal {
 
-std::vector<double> Plain(const Eigen::VectorXd& x);  // as a Calibration keeps it
+// As a Calibration keeps it.
+inline std::vector<double> Plain(const Eigen::VectorXd& x) { return {x.data(), x.data() + x.size()}; }
 
 // Numbers for a figure: a row each, in the units of the columns; nan where there is none.
 struct NumberTable {
@@ -32,9 +35,9 @@ struct Parameter {
   // By what an estimated one is known: "data", or "prior" where the prior brings more than half of the information;
   // "held" or "considered" else.
   std::string determined;
-  // Standard uncertainties; 0 for what is held. u is the headline (solver/uncertainty/headline.h).
+  // Standard uncertainties; 0 for what is held. u is the headline (HeadlineOf).
   double u = 0, u_naive = 0, u_clustered = 0, u_jackknife = 0, u_bootstrap = 0;
-  double dof = 0, k = 0, U = 0;  // U = k u: 95 % coverage
+  double dof = 0, k = 0, U = 0;  // U = k u, coverage kCoverage (solver/uncertainty/gum.h), as of every interval
 };
 
 // Residuals from a line of each view's own, in the order along the view, pooled over the views of a target.
@@ -100,30 +103,39 @@ struct LengthCheck {
 struct ErrorSize {  // of absolute values; 0 of none
   double max = 0, mean = 0;
 };
-ErrorSize SizeOfErrors(const std::vector<double>& errors);
+inline ErrorSize SizeOfErrors(const std::vector<double>& errors) {
+  ErrorSize size;
+  for (const double error : errors) {
+    size.max = std::max(size.max, std::abs(error));
+    size.mean += std::abs(error) / static_cast<double>(errors.size());
+  }
+  return size;
+}
 
 struct LackOfFit {  // of everything within views against everything between them: noise that is not white shows, too
   double pure_error_sigma = 0;              // mm
   double F = 0, dof1 = 0, dof2 = 0, p = 1;  // dof1 = 0: not computed
 };
 
-struct MisfitTest {  // see solver/uncertainty/misfit.h
+// A source of system or target scope that was not estimated, tested for what the residuals say of it (TestMisfits).
+struct MisfitTest {
   std::string source;
   bool considered = false;  // with a u; else held
   Unit unit = Unit::kOne;
-  double size = 0;
-  double F = 0, dof1 = 0, dof2 = 0, p = 1;
-  std::vector<double> moves;  // per estimated parameter
+  double size = 0;                   // what a fit would give it; of several instances the rms that is not explained
+  double F = 0, dof1 = 0, dof2 = 0;  // of the score test
+  double p = 1;                      // for this source, among all that were tested
+  std::vector<double> moves;         // per estimated parameter: by how much a misfit of that size moves it
 };
 
-struct JointRegion {  // all estimated parameters together, coverage 95 %
+struct JointRegion {  // all estimated parameters together
   double k = 0, dof = 0;
 };
 
 struct MonteCarloParameter {  // JCGM 101, of one estimated parameter
   std::string name;
   double mean = 0, deviation = 0;    // of the trials
-  double low = 0, high = 0;          // probabilistically symmetric 95 % interval
+  double low = 0, high = 0;          // probabilistically symmetric interval
   double gum_low = 0, gum_high = 0;  // value - U, value + U
   double tolerance = 0;              // by which the ends may differ, 7.9.2
   std::string verdict;               // on value +- U: PASS, FAIL or UNDECIDED
@@ -164,7 +176,7 @@ struct Calibration {
   std::vector<Influence> influences;
   std::vector<std::vector<double>> jackknife;  // per target: the estimated parameters without it
   MonteCarloSummary monte_carlo;
-  // Points on a grid of readings that spans what was scanned, with the expanded uncertainties (95 %) that the
+  // Points on a grid of readings that spans what was scanned, with the expanded uncertainties that the
   // calibration gives them. Columns: the numbers of a reading, "X", "Y", "Z", then U along these and in the direction
   // that is known least.
   NumberTable volume;

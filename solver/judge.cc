@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include "solver/uncertainty/coverage.h"
-#include "solver/uncertainty/neighbours.h"
+#include "solver/uncertainty/gum.h"
+#include "solver/uncertainty/misfit.h"
 
 namespace scancal {
 namespace {
@@ -83,6 +83,8 @@ void JudgeNeighbours(const Solution& solution, Calibration* result) {
   if (!solution.problem.With({Scope::kSystem, Scope::kTarget}, Role::kConsider).empty()) return;
   const double significant = kFarFromIndependent * neighbours.standard_error;
   if (neighbours.correlation < std::max(significant, kLeastCorrelation)) return;
+  // The variance of the mean of a series whose correlation falls as rho^lag is (1 + rho) / (1 - rho) times that of an
+  // independent one (Zhang, Metrologia 43, 2006, S276).
   result->warnings.push_back(fmt::format(
       "neighbouring views are correlated ({:.2g}), but count as independent: as far as that is neither form "
       "nor a wrong model, u is too small by a factor of about {:.2g}",
@@ -121,7 +123,7 @@ void JudgePriors(const Problem& problem, Calibration* result) {
 
 }  // namespace
 
-void Judge(const Solution& solution, const Jackknife& jackknife, double noise_dof, Calibration* calibration) {
+void AddDoubts(const Solution& solution, const Jackknife& jackknife, double noise_dof, Calibration* calibration) {
   JudgeJackknife(solution, jackknife, noise_dof, calibration);
   if (solution.variances) {
     JudgeMisfits(calibration);

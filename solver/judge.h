@@ -9,6 +9,6 @@ namespace scancal {
 // views, targets that contradict each other, data that contradict a prior, and what the model leaves out if it is
 // significant and moves a quantity by more than its u. With equal weights lack of fit is a warning only. noise_dof:
 // degrees of freedom of what is known of the noise.
-void Judge(const Solution& solution, const Jackknife& jackknife, double noise_dof, Calibration* calibration);
+void AddDoubts(const Solution& solution, const Jackknife& jackknife, double noise_dof, Calibration* calibration);
 
 }  // namespace scancal

@@ -1,5 +1,7 @@
 #include "solver/linearize.h"
+#include <glog/logging.h>
 #include <Eigen/QR>
+#include <Eigen/SVD>
 #include "solver/triangular_factor.h"
 
 namespace scancal {
@@ -22,10 +24,54 @@ void Eliminate(const Eigen::MatrixXd& own, Eigen::MatrixXd system, LinearTarget*
     if (std::abs(target->own_factor(k, k)) <= kRankTolerance * own.col(k).norm()) target->own_determined = false;
   target->coupling = target->q.transpose() * system;
   system -= target->q * target->coupling;
-  system -=
-      target->q * (target->q.transpose() * system).eval();  // twice is enough: what is left may be 1e-8 of the whole
+  // Twice is enough (Parlett, The Symmetric Eigenvalue Problem, 1980, 6.9): what is left may be 1e-8 of the whole.
+  system -= target->q * (target->q.transpose() * system).eval();
   target->system_left = std::move(system);
 }
+
+constexpr double kNoEffect = 1e-9;   // relative to a quantity's effect before elimination: rounding
+constexpr double kTakesPart = 0.05;  // of a unit vector
+
+class AffineRows final : public Rows {
+ public:
+  AffineRows(const Rows& rows, std::vector<double> q0, std::span<const int> known)
+      : q0_(std::move(q0)),
+        column_(q0_.size(), -1),
+        r0_(rows.size()),
+        jacobian_(rows.size(), std::ssize(known)),
+        points_(rows.points()),
+        count_(rows.count()) {
+    for (size_t k = 0; k < known.size(); ++k) column_[known[k]] = static_cast<int>(k);
+    rows.Evaluate(q0_.data(), nullptr, known, r0_.data(), known.empty() ? nullptr : jacobian_.data());
+  }
+  int size() const override { return static_cast<int>(r0_.size()); }
+  int points() const override { return points_; }
+  double count() const override { return count_; }
+  void Evaluate(const double* q, const double* point, std::span<const int> seeds, double* r,
+                double* jacobian) const override {
+    CHECK(!point) << "affine rows do not take values of single points";
+    auto residual = Eigen::VectorXd::Map(r, r0_.size());
+    residual = r0_;
+    for (size_t k = 0; k < q0_.size(); ++k) {
+      if (q[k] == q0_[k]) continue;
+      CHECK_GE(column_[k], 0) << "affine rows do not know the derivative by quantity " << k;
+      residual += (q[k] - q0_[k]) * jacobian_.col(column_[k]);
+    }
+    for (size_t k = 0; jacobian && k < seeds.size(); ++k) {
+      CHECK_GE(column_[seeds[k]], 0) << "affine rows do not know the derivative by quantity " << seeds[k];
+      Eigen::VectorXd::Map(jacobian + static_cast<Eigen::Index>(k) * r0_.size(), r0_.size()) =
+          jacobian_.col(column_[seeds[k]]);
+    }
+  }
+
+ private:
+  std::vector<double> q0_;
+  std::vector<int> column_;  // per quantity, -1: derivative not known
+  Eigen::VectorXd r0_;
+  Eigen::MatrixXd jacobian_;
+  int points_;
+  double count_;
+};
 
 }  // namespace
 
@@ -102,6 +148,47 @@ double StepLength(const Linearization& linear) {
   for (const LinearTarget& target : linear.targets)
     if (target.q.size()) squared += (target.q.transpose() * target.r).squaredNorm();
   return std::sqrt(squared);
+}
+
+Observability Observe(const Problem& problem, const Linearization& linear) {
+  Observability result;
+  for (size_t t = 0; t < problem.targets.size(); ++t)
+    if (!linear.targets[t].own_determined) result.undetermined_targets.push_back(problem.targets[t].name);
+  const std::vector<int> system = problem.With({Scope::kSystem}, Role::kEstimate);
+  if (system.empty()) return result;
+  const Eigen::VectorXd scale = linear.system_norm.cwiseMax(1e-300).cwiseInverse();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(linear.factor * scale.asDiagonal(), Eigen::ComputeFullV);
+  result.singular = svd.singularValues();
+  const Eigen::Index last = result.singular.size() - 1;
+  result.condition = result.singular[0] / result.singular[last];
+  result.weakest = svd.matrixV().col(last);
+  for (size_t k = 0; k < system.size(); ++k) {
+    bool found = false;
+    for (Eigen::Index i = 0; i <= last; ++i)
+      found |= result.singular[i] < kNoEffect && std::abs(svd.matrixV()(static_cast<Eigen::Index>(k), i)) > kTakesPart;
+    if (found) result.undetermined.push_back(problem.quantities[system[k]].name);
+  }
+  return result;
+}
+
+Problem Affine(const Problem& problem, const Estimate& at) {
+  std::vector<int> known;
+  for (int k = 0; k < std::ssize(problem.quantities); ++k) {
+    const Quantity& q = problem.quantities[k];
+    if (q.role == Role::kEstimate ||
+        (q.role == Role::kConsider && (q.scope == Scope::kView || q.scope == Scope::kPoint)))
+      known.push_back(k);
+  }
+  Problem affine = problem;
+  for (size_t t = 0; t < affine.targets.size(); ++t) {
+    Target& target = affine.targets[t];
+    target.nodes = {};
+    target.interpolation.clear();
+    const std::vector<double> values = Values(problem, at, t);
+    for (Block& view : target.views)
+      if (view.prior.empty()) view.rows = std::make_shared<AffineRows>(*view.rows, values, known);
+  }
+  return affine;
 }
 
 }  // namespace scancal

@@ -66,7 +66,8 @@ concept HasNodes = ScannerModel<M> && requires(const M m, const typename M::Targ
   { m.Interpolate(std::vector{v}, v) } -> std::convertible_to<Eigen::MatrixXd>;  // as in Target::interpolation
 };
 
-// Residuals of some views of one target, differentiated by dual numbers of a fixed width.
+// Residuals of some views of one target, differentiated forwards by dual numbers of a fixed width (Griewank and
+// Walther, Evaluating Derivatives, 2008, ch. 3; Jet of Ceres).
 template <ScannerModel M>
 class ModelRows final : public Rows {
  public:

@@ -1,7 +1,6 @@
 #include "solver/problem.h"
 #include <algorithm>
 #include "solver/triangular_factor.h"
-#include "solver/whiten.h"
 
 namespace scancal {
 namespace {
@@ -23,8 +22,6 @@ class PriorRow final : public Rows {
   int quantity_;
   double value_;
 };
-
-double InverseDeviation(double sigma) { return Whitening(Eigen::MatrixXd::Constant(1, 1, sigma * sigma))(0, 0); }
 
 }  // namespace
 
@@ -86,7 +83,7 @@ void Problem::AddPriors(const std::vector<int>& of) {
   for (const int k : of) {
     const Quantity& q = quantities[k];
     if (q.u <= 0) continue;
-    const Block prior{std::make_shared<PriorRow>(k, q.value), InverseDeviation(q.u), {}, {}, "prior of " + q.Source()};
+    const Block prior{std::make_shared<PriorRow>(k, q.value), 1 / q.u, {}, {}, "prior of " + q.Source()};
     if (q.scope == Scope::kSystem) {
       priors.push_back(prior);
     } else {
@@ -99,7 +96,7 @@ void Problem::WeighEqually(double sigma) {
   for (Target& target : targets) {
     for (Block& view : target.views) {
       if (!view.prior.empty()) continue;
-      view.weight = InverseDeviation(sigma);
+      view.weight = 1 / sigma;
       view.mix.resize(0, 0);
     }
     target.MixNodes();

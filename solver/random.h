@@ -1,4 +1,5 @@
-// Random numbers that are the same everywhere: Philox (Salmon et al. 2011), a function of key and counter.
+// Random numbers that are the same everywhere: Philox (Salmon et al. 2011, Parallel Random Numbers: As Easy as 1, 2,
+// 3), a function of key and counter.
 #pragma once
 #include <cstdint>
 

@@ -1,4 +1,5 @@
-// Joint refinement: Ceres' Levenberg-Marquardt to the neighbourhood, Gauss-Newton by QR to the last digits.
+// Joint refinement: Ceres' Levenberg-Marquardt (Marquardt 1963) to the neighbourhood, Gauss-Newton by QR to the last
+// digits.
 #pragma once
 #include <string>
 #include "solver/linearize.h"

@@ -5,7 +5,8 @@
 namespace scancal {
 
 // R (n x n, upper triangular) with |R t| = |F t| for every t, of a tall matrix F that is never held: rows are added in
-// any number, factors of parts of F merge. By Householder QR of the stacked rows, never by F'F, which would lose the
+// any number, factors of parts of F merge. By Householder QR of the stacked rows (Lawson and
+// Hanson, Solving Least Squares Problems, 1974, ch. 27), never by F'F, which would lose the
 // cost of a good fit (6 % at 0.5 um noise). The order of rows and merges changes R by rounding and signs only.
 class TriangularFactor {
  public:

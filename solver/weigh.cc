@@ -1,7 +1,13 @@
 #include "solver/weigh.h"
-#include "solver/whiten.h"
+#include <glog/logging.h>
+#include <Eigen/Cholesky>
 
 namespace scancal {
+Eigen::MatrixXd Whitening(const Eigen::MatrixXd& covariance) {
+  const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
+  CHECK(llt.info() == Eigen::Success) << "a covariance must be positive definite: every row needs noise of its own";
+  return llt.matrixL().solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
+}
 
 Eigen::MatrixXd Instances(const Eigen::VectorXd& derivative, int points, Scope scope) {
   if (scope != Scope::kPoint) return derivative;

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 #include "solver/calibrate.h"
+#include "solver/uncertainty/budget.h"
 #include "solver/uncertainty/covariance.h"
-#include "solver/uncertainty/propagate.h"
 
 namespace scancal {
 
@@ -149,7 +149,7 @@ TYPED_TEST_P(ModelContract, UncertaintyByPropagationEqualsItsMonteCarlo) {
     const Eigen::VectorXd error = fit.estimate.system - data.truth;
     if (trial == 0) {
       scatter = 0 * error * error.transpose();
-      stated = Propagate(data.problem, fit.estimate, Linearize(data.problem, fit.estimate, Storey::kViews)).Total();
+      stated = BudgetOf(data.problem, fit.estimate, Linearize(data.problem, fit.estimate, Storey::kViews)).Total();
     }
     scatter += error * error.transpose() / kTrials;
   }

@@ -5,7 +5,7 @@
 #include "models/selftest/known.h"
 #include "models/selftest/regression.h"
 #include "models/selftest/sensitivity.h"
-#include "solver/uncertainty/law_of_propagation.h"
+#include "solver/uncertainty/gum.h"
 
 namespace scancal {
 namespace {

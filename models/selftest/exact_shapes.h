@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <string>
 #include <vector>
-#include "solver/selftest.h"
+#include "solver/results.h"
 
 namespace scancal {
 

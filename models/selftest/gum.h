@@ -1,6 +1,6 @@
 // The worked examples of the GUM (JCGM 100:2008, Annex H): inputs and published results.
 #pragma once
-#include "solver/selftest.h"
+#include "solver/results.h"
 
 namespace scancal {
 

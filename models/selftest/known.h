@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
-#include "solver/selftest.h"
+#include "solver/results.h"
 
 namespace scancal {
 

@@ -5,7 +5,7 @@
 #include <vector>
 #include "io/result.h"
 #include "models/selftest/nist_models.h"
-#include "solver/selftest.h"
+#include "solver/results.h"
 
 namespace scancal {
 

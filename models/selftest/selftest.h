@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 #include "io/result.h"
-#include "solver/selftest.h"
+#include "solver/results.h"
 
 namespace scancal {
 

@@ -4,7 +4,7 @@
 #include "io/result.h"
 #include "models/turntable/volume.h"
 #include "solver/calibration.h"
-#include "solver/propagation.h"
+#include "solver/results.h"
 
 namespace scancal {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include "io/progress.h"
 #include "models/turntable/turntable_scanner.h"
-#include "solver/uncertainty/headline.h"
+#include "solver/calibrate.h"
 
 namespace scancal {
 namespace {

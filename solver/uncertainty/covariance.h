@@ -16,14 +16,15 @@ struct Covariance {
   double dof = 0;
 };
 
-// s^2 (J'J)^-1, s^2 = cost / (observations - quantities): right only for white, independent points. Shown for
+// s^2 (J'J)^-1, s^2 = cost / (observations - quantities) (GUM H.3.2 for a line; Seber and Wild, Nonlinear Regression,
+// 1989, 2.1): right only for white, independent points. Shown for
 // comparison.
 Covariance NaiveCovariance(const Problem& problem, const Linearization& linear);
 
-// Sandwich (J'J)^-1 (sum_c g_c g_c') (J'J)^-1 with one cluster per view, g_c = J_c' (I - H_cc)^-1/2 r_c: right whenever
-// views are independent of each other, whatever happens inside one (jitter, line correlation). The leverage correction
-// H_cc makes it unbiased for white noise (Bell and McCaffrey 2002, "CR2"). Priors enter with their own unit noise, not
-// their residual. dof: clusters minus quantities. linear: of the views.
+// Sandwich (J'J)^-1 (sum_c g_c g_c') (J'J)^-1 with one cluster per view, g_c = J_c' (I - H_cc)^-1/2 r_c: (White 1980;
+// Liang and Zeger 1986): right whenever views are independent of each other, whatever happens inside one (jitter, line
+// correlation). The leverage correction H_cc makes it unbiased for white noise (Bell and McCaffrey 2002, "CR2"). Priors
+// enter with their own unit noise, not their residual. dof: clusters minus quantities. linear: of the views.
 Covariance ClusteredCovariance(const Problem& problem, const Linearization& linear);
 
 // Per target, last the priors: J'J of the system, and the sum over its clusters of g_c g_c'.

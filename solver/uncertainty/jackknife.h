@@ -6,22 +6,25 @@
 namespace scancal {
 
 struct Jackknife {
-  Eigen::MatrixXd estimates;  // targets x system: the fit without that target; empty with fewer than two targets, and
-                              // with more than 40: none of them moves anything, and time goes with their square
-  Eigen::MatrixXd
-      covariance;  // (m - 1)/m sum (x_i - mean)(x_i - mean)', m - 1 degrees of freedom: a diagnostic, no headline
+  // targets x system: the fit without that target; empty with fewer than two targets, and with more than 40: none of
+  // them moves anything, and time goes with their square.
+  Eigen::MatrixXd estimates;
+  Eigen::MatrixXd covariance;  // m - 1 degrees of freedom: a diagnostic, no headline
   bool converged = true;
 };
 
+// Each target left out in turn, the rest fitted anew: (m - 1)/m sum (x_i - mean)(x_i - mean)' (Tukey 1958; Efron and
+// Tibshirani, An Introduction to the Bootstrap, 1993, eq. (11.5)).
 Jackknife LeaveOneTargetOut(const Problem& problem, const Fit& fit);
 
 // What the variances of the jackknife would be on average if views were independent, as the clustered covariance
 // supposes. Not that covariance itself: few targets, each needed by the others, scatter more. To first order, leaving
-// target i out moves the fit by (H - H_i)^-1 s_i, where s_i = s_i0 - H_i H^-1 sum_j s_j0 is its score at the fit and
-// s_j0 has the covariance of its clusters and of what was considered: of target scope its own, of system scope common.
+// target i out moves the fit by (H - H_i)^-1 s_i (one Newton step from the fit; Miller 1974), where s_i = s_i0 - H_i
+// H^-1 sum_j s_j0 is its score at the fit and s_j0 has the covariance of its clusters and of what was considered: of
+// target scope its own, of system scope common.
 struct ExpectedJackknife {
   Eigen::VectorXd variance;  // per system quantity
-  Eigen::VectorXd dof;       // of a chi-squared with the same mean and spread (Satterthwaite); at most targets - 1
+  Eigen::VectorXd dof;       // of a chi-squared with the same mean and spread (Satterthwaite 1946); at most targets - 1
 };
 ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate& fit, const Linearization& linear);
 

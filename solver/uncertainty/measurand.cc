@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include "solver/uncertainty/coverage.h"
+#include "solver/uncertainty/gum.h"
 
 namespace scancal {
 namespace {
 
-constexpr double kCoverage = 0.95;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Of the variance that the gradient makes of the joint covariance.

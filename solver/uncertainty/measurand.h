@@ -27,7 +27,7 @@ JointCovariance JointOf(const Calibration& calibration);
 
 struct MeasurandUncertainty {
   Eigen::MatrixXd covariance;  // of the components
-  double dof = 0, k = 0;       // one k for all components: coverage 95 %
+  double dof = 0, k = 0;       // one k for all components
   Eigen::VectorXd U;           // k u of each component
   double U_max = 0;            // k sqrt(largest eigenvalue): in the direction that is known least
 };

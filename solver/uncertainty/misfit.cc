@@ -4,7 +4,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include "solver/uncertainty/coverage.h"
+#include "solver/uncertainty/gum.h"
 #include "solver/weigh.h"
 
 namespace scancal {
@@ -93,13 +93,13 @@ Eigen::VectorXd Residuals(const Linearization& linear) {
 
 // What the residuals see of the instances m: m = directions * value, and the covariance of `value` from the noise and
 // from everything that was considered.
-struct Seen {
+struct Visible {
   Eigen::MatrixXd directions;
   Eigen::VectorXd value;
   Eigen::MatrixXd covariance;
 };
 
-Seen See(const Columns& columns, const Eigen::VectorXd& r, const Eigen::MatrixXd& considered) {
+Visible VisibleOf(const Columns& columns, const Eigen::VectorXd& r, const Eigen::MatrixXd& considered) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns.left);
   const Eigen::Index n = columns.left.cols();
   const Eigen::MatrixXd triangle = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
@@ -111,22 +111,22 @@ Seen See(const Columns& columns, const Eigen::VectorXd& r, const Eigen::MatrixXd
     const Eigen::MatrixXd in_basis = qr.householderQ().adjoint() * to;
     return -(inverse.asDiagonal() * svd.matrixU().leftCols(rank).transpose() * in_basis.topRows(n));
   };
-  Seen seen;
-  seen.directions = svd.matrixV().leftCols(rank);
-  seen.value = fitted(r);
-  seen.covariance = inverse.cwiseAbs2().asDiagonal();
+  Visible visible;
+  visible.directions = svd.matrixV().leftCols(rank);
+  visible.value = fitted(r);
+  visible.covariance = inverse.cwiseAbs2().asDiagonal();
   if (considered.cols() > 0 && rank > 0) {
     const Eigen::MatrixXd of_considered = fitted(considered);
-    seen.covariance += of_considered * of_considered.transpose();
+    visible.covariance += of_considered * of_considered.transpose();
   }
-  return seen;
+  return visible;
 }
 
 }  // namespace
 
-std::vector<Misfit> TestMisfits(const Problem& problem, const Estimate& fit, const Linearization& linear,
-                                double noise_dof) {
-  std::vector<Misfit> misfits;
+std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit, const Linearization& linear,
+                                    double noise_dof) {
+  std::vector<MisfitTest> misfits;
   if (!(noise_dof >= 1)) return misfits;
   const Eigen::VectorXd r = Residuals(linear);
   const std::vector<Source> sources = Testable(problem);
@@ -142,31 +142,56 @@ std::vector<Misfit> TestMisfits(const Problem& problem, const Estimate& fit, con
   }
   for (size_t s = 0; s < sources.size(); ++s) {
     if (!(columns[s].length > 0) || columns[s].left.cols() > r.size()) continue;
-    const Seen seen = See(columns[s], r, considered);
-    if (seen.value.size() == 0) continue;
+    const Visible visible = VisibleOf(columns[s], r, considered);
+    if (visible.value.size() == 0) continue;
     const Quantity& quantity = problem.quantities[sources[s].quantities[0]];
-    Misfit& misfit = misfits.emplace_back();
+    MisfitTest& misfit = misfits.emplace_back();
     misfit.source = sources[s].name;
     misfit.considered = quantity.role == Role::kConsider;
     misfit.unit = quantity.unit;
-    misfit.dof1 = static_cast<double>(seen.value.size());
+    misfit.dof1 = static_cast<double>(visible.value.size());
     misfit.dof2 = noise_dof;
-    const Eigen::LLT<Eigen::MatrixXd> covariance(seen.covariance);
-    misfit.F = seen.value.dot(covariance.solve(seen.value)) / misfit.dof1;
+    const Eigen::LLT<Eigen::MatrixXd> covariance(visible.covariance);
+    misfit.F = visible.value.dot(covariance.solve(visible.value)) / misfit.dof1;
     misfit.p = FUpperTail(misfit.F, misfit.dof1, misfit.dof2);
     if (columns[s].left.cols() == 1) {
-      misfit.size = seen.value[0] * seen.directions(0, 0);
-      misfit.moves = columns[s].moves.col(0) * misfit.size;
+      misfit.size = visible.value[0] * visible.directions(0, 0);
+      misfit.moves = Plain(columns[s].moves.col(0) * misfit.size);
     } else {
-      // Method of moments: the mean square that noise and declaration leave unexplained, equal for all instances.
-      const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(seen.value.size(), seen.value.size());
+      // Method of moments (Searle, Casella and McCulloch, Variance Components, 1992, ch. 5): the mean square that noise
+      // and declaration leave unexplained, equal for all instances.
+      const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(visible.value.size(), visible.value.size());
       misfit.size = std::sqrt(std::max(0.0, (misfit.F - 1) * misfit.dof1 / covariance.solve(identity).trace()));
-      misfit.moves = columns[s].moves.rowwise().norm() * misfit.size;
+      misfit.moves = Plain(columns[s].moves.rowwise().norm() * misfit.size);
     }
   }
   const double tests = static_cast<double>(misfits.size());
-  for (Misfit& misfit : misfits) misfit.p = std::min(1.0, misfit.p * tests);
+  for (MisfitTest& misfit : misfits) misfit.p = std::min(1.0, misfit.p * tests);
   return misfits;
+}
+
+Neighbours CorrelationOfNeighbours(const Problem& problem, const Estimate& fit, const Linearization& linear) {
+  const std::vector<int> of_view = problem.With({Scope::kView}, Role::kConsider);
+  double products = 0, squares_of_products = 0, squares = 0;
+  for (size_t t = 0; t < problem.targets.size(); ++t) {
+    const std::vector<double> values = Values(problem, fit, t);
+    const LinearTarget& target = linear.targets[t];
+    Eigen::VectorXd before;
+    for (size_t v = 0; v < problem.targets[t].views.size(); ++v) {
+      const Block& view = problem.targets[t].views[v];
+      if (!view.prior.empty()) continue;
+      const Eigen::MatrixXd effects = view.Weighted(RawDerivatives(view, values, of_view)).colwise().normalized();
+      const Eigen::VectorXd z = effects.transpose() * target.r.segment(target.first[v], effects.rows());
+      squares += z.squaredNorm();
+      if (before.size()) {
+        products += z.dot(before);
+        squares_of_products += z.dot(before) * z.dot(before);
+      }
+      before = z;
+    }
+  }
+  if (!(squares > 0)) return {};
+  return {products / squares, std::sqrt(squares_of_products) / squares};
 }
 
 }  // namespace scancal

@@ -1,29 +1,27 @@
 // What the model leaves out, asked of the residuals.
 #pragma once
-#include <Eigen/Core>
-#include <string>
 #include <vector>
+#include "solver/calibration.h"
 #include "solver/linearize.h"
 
 namespace scancal {
 
-// A source of system or target scope that was not estimated (held, or considered with its u), tested for what the
-// residuals say of it (score test; Rao 1948): with B its columns dr/dq, free of what the estimated quantities explain,
+// Every source of system or target scope that was not estimated (held, or considered with its u), in the order of the
+// quantities, tested by its score (Rao 1948): with B its columns dr/dq, free of what the estimated quantities explain,
 // m = -(B'B)^-1 B'r is what a fit would give it; its covariance is (B'B)^-1 from the noise, and what everything that
-// was considered, itself among it, makes of m.
-struct Misfit {
-  std::string source;
-  bool considered = false;  // with a u; else held
-  Unit unit = Unit::kOne;
-  double size = 0;                   // m; of several instances the rms that is not explained
-  double F = 0, dof1 = 0, dof2 = 0;  // m' (cov m)^-1 m / dof1
-  double p = 1;                      // for this source, among all that were tested (Bonferroni)
-  Eigen::VectorXd moves;             // per system quantity: by how much a misfit of that size moves it
-};
+// was considered, itself among it, makes of m. F = m' (cov m)^-1 m / dof1; p after Bonferroni, for all that were
+// tested. The problem is weighed with its noise; linear: of the views, at the fit. noise_dof: degrees of freedom of
+// that noise.
+std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit, const Linearization& linear,
+                                    double noise_dof);
 
-// Every testable source, in the order of the quantities. The problem is weighed with its noise; linear: of the views,
-// at the fit. noise_dof: degrees of freedom of that noise.
-std::vector<Misfit> TestMisfits(const Problem& problem, const Estimate& fit, const Linearization& linear,
-                                double noise_dof);
+// Are views independent of each other, as everything here counts them? Correlation between neighbouring views of a
+// target, pooled over targets and over everything of view scope: with z_v the whitened residual of view v along the
+// effects of such quantities, sum z_v . z_v+1 / sum |z_v|^2 (Box and Jenkins, Time Series Analysis, 1970, 2.1, at lag
+// 1). The standard error is that of independent pairs, from their own spread: effects may look alike.
+struct Neighbours {
+  double correlation = 0, standard_error = 0;
+};
+Neighbours CorrelationOfNeighbours(const Problem& problem, const Estimate& fit, const Linearization& linear);
 
 }  // namespace scancal

@@ -19,8 +19,8 @@ struct Variances {
   Eigen::MatrixXd covariance;        // of the variances: inverse of their expected information
   std::vector<Exceeded> exceeded;    // estimated in place of what was declared
   bool converged = true;
-  // 2 v^2 / var(v): those of a chi-squared with the same mean and spread (Satterthwaite). Infinite for a source that
-  // was not estimated.
+  // 2 v^2 / var(v): those of a chi-squared with the same mean and spread (Satterthwaite 1946). Infinite for a source
+  // that was not estimated.
   double Dof(const std::string& source) const;
   // Of the variance sum_k share[k], share[k] that of source k: 2 (sum)^2 / var(sum) if `total` is the whole (GUM G.4
   // with all that was estimated as one block).

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 #include "models/turntable/turntable_scanner.h"
-#include "solver/uncertainty/coverage.h"
+#include "solver/uncertainty/gum.h"
 #include "tests/in_parallel.h"
 
 namespace scancal::coverage {
@@ -40,7 +40,7 @@ Turntable Declared(const Row& row) {
 }  // namespace
 
 Trial Try(const Row& row, const Oracle& oracle, uint64_t seed) {
-  static const double k = CoverageFactor(0.95, std::numeric_limits<double>::infinity());
+  static const double k = CoverageFactor(kCoverage, std::numeric_limits<double>::infinity());
   TurntableScene scene = row.scene;
   scene.seed = seed;
   const std::vector<SimulatedPlacement> placements = SimulateTurntable(scene);

@@ -1,9 +1,9 @@
 // Monte Carlo on the turntable: the fast estimation of a trial is Refine's, and trials scatter as K V K'.
 #include <gtest/gtest.h>
 #include "models/turntable/turntable_scanner.h"
+#include "solver/uncertainty/budget.h"
 #include "solver/uncertainty/monte_carlo.h"
-#include "solver/uncertainty/propagate.h"
-#include "solver/whiten.h"
+#include "solver/weigh.h"
 #include "tests/models/turntable_scene.h"
 
 namespace scancal {
@@ -82,7 +82,7 @@ TEST(TurntableMonteCarlo, ATrialEndsWhereRefineDoes) {
   const VarianceDof dof = {{"noise_y", 20}, {"encoder_jitter", 9}};
   for (const auto residuals : {Turntable::Residuals::kDepth, Turntable::Residuals::kPlane}) {
     const Drawable d = MakeDrawable(residuals);
-    const Eigen::ArrayXd u = Propagate(d.problem, d.fit.estimate, d.linear).Total().diagonal().cwiseSqrt();
+    const Eigen::ArrayXd u = BudgetOf(d.problem, d.fit.estimate, d.linear).Total().diagonal().cwiseSqrt();
     const MonteCarloSample sample = MonteCarlo(d.problem, d.fit, d.linear, dof, {.trials = kTrials, .seed = 5});
     ASSERT_EQ(sample.failed, 0);
     DrawnProblem drawn(d.problem, d.fit.estimate, dof);
@@ -102,7 +102,7 @@ TEST(TurntableMonteCarlo, TrialsScatterAsKVKSays) {
   constexpr int kTrials = 1000;
   const MonteCarloSample sample = MonteCarlo(d.problem, d.fit, d.linear, {}, {.trials = kTrials});
   EXPECT_EQ(sample.failed, 0);
-  const Eigen::MatrixXd stated = Propagate(d.problem, d.fit.estimate, d.linear).Total();
+  const Eigen::MatrixXd stated = BudgetOf(d.problem, d.fit.estimate, d.linear).Total();
   const Eigen::MatrixXd centred = sample.estimates.rowwise() - sample.estimates.colwise().mean();
   for (Eigen::Index k = 0; k < stated.rows(); ++k)
     EXPECT_NEAR(std::sqrt(centred.col(k).squaredNorm() / kTrials / stated(k, k)), 1, 4 / std::sqrt(2.0 * kTrials))

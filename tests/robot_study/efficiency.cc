@@ -6,8 +6,8 @@
 #include <numbers>
 #include "models/robot_ball/gauge.h"
 #include "models/robot_ball/robot_fit.h"
-#include "solver/uncertainty/coverage.h"
-#include "solver/uncertainty/headline.h"
+#include "solver/calibrate.h"
+#include "solver/uncertainty/gum.h"
 #include "solver/weigh.h"
 #include "tests/in_parallel.h"
 
@@ -81,7 +81,7 @@ Try Refined(const RobotScene& scene, Noise noise, const Truth& truth) {
   const VectorXd wanted = Estimated(model.quantities(), truth.setup);
   WrapHandEye(wanted, &value);
   Try result{value - wanted, headline.covariance.diagonal().cwiseSqrt()};
-  for (Eigen::Index k = 0; k < value.size(); ++k) result.U[k] *= CoverageFactor(0.95, headline.dof[k]);
+  for (Eigen::Index k = 0; k < value.size(); ++k) result.U[k] *= CoverageFactor(kCoverage, headline.dof[k]);
   return result;
 }
 

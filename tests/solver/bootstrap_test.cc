@@ -1,7 +1,7 @@
-#include "solver/uncertainty/bootstrap.h"
 #include <gtest/gtest.h>
 #include "solver/refine.h"
 #include "solver/uncertainty/covariance.h"
+#include "solver/uncertainty/resampling.h"
 #include "tests/solver/line_model.h"
 
 namespace scancal {

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 #include <cmath>
 #include <thread>
+#include "solver/uncertainty/budget.h"
 #include "solver/uncertainty/covariance.h"
-#include "solver/uncertainty/propagate.h"
-#include "solver/whiten.h"
+#include "solver/weigh.h"
 #include "tests/solver/line_model.h"
 
 namespace scancal {
@@ -105,7 +105,7 @@ TEST(MonteCarlo, ScattersAsKVKWithWhatNoWeightHolds) {
   for (Target& target : problem.targets) target.views[0].mix *= 0.5;  // nor must weights be right
   const Fitted f = FitOf(std::move(problem));
   constexpr int64_t kTrials = 5000;
-  const Eigen::MatrixXd expected = Propagate(f.problem, f.fit.estimate, f.linear).Total();
+  const Eigen::MatrixXd expected = BudgetOf(f.problem, f.fit.estimate, f.linear).Total();
   EXPECT_GT(expected(0, 0), 1.5 * InverseInformation(f.linear)(0, 0));
   ExpectCovariance(CovarianceOf(Sample(f, {}, {.trials = kTrials}).estimates), expected, kTrials);
 }
@@ -145,7 +145,7 @@ Fitted NoisyLines() {
 TEST(MonteCarlo, DrawsEstimatedVariancesFromTheirScaledInverseChiSquared) {
   const Fitted f = NoisyLines();
   constexpr int kTrials = 10'000;
-  const double u = std::sqrt(Propagate(f.problem, f.fit.estimate, f.linear).Total()(0, 0));
+  const double u = std::sqrt(BudgetOf(f.problem, f.fit.estimate, f.linear).Total()(0, 0));
   // The slope is then u times a Student t, whose variance is dof / (dof - 2) and whose kurtosis 3 + 6 / (dof - 4).
   const double dof = 12, variance = dof / (dof - 2), kurtosis = 3 + 6 / (dof - 4);
   const Eigen::MatrixXd drawn = Sample(f, {{"noise", dof}}, {.trials = kTrials}).estimates;

@@ -1,6 +1,6 @@
 #include "solver/refine.h"
 #include <gtest/gtest.h>
-#include "solver/observability.h"
+#include "solver/linearize.h"
 #include "solver/uncertainty/jackknife.h"
 #include "tests/solver/line_model.h"
 

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 #include "solver/calibrate.h"
+#include "solver/uncertainty/budget.h"
 #include "solver/uncertainty/covariance.h"
-#include "solver/uncertainty/coverage.h"
-#include "solver/uncertainty/propagate.h"
+#include "solver/uncertainty/gum.h"
 #include "tests/solver/line_model.h"
 
 namespace scancal {
@@ -55,7 +55,7 @@ TEST(Covariance, OnlyTheClusteredOneIsRightWhenViewsShareAnError) {
   EXPECT_NEAR(study.clustered / study.scatter, 1, kTolerance);
 }
 
-TEST(Propagate, EqualsTheTextbookForEveryScope) {
+TEST(Budget, EqualsTheTextbookForEveryScope) {
   LineModel model;
   const auto consider = [&](int k, double u) {
     model.quantity(k).role = Role::kConsider;
@@ -68,7 +68,7 @@ TEST(Propagate, EqualsTheTextbookForEveryScope) {
   const auto targets = scene.Make();
   const Problem problem = MakeProblem<LineModel>(std::make_shared<LineModel>(model), targets);
   const Estimate fit = Refine(problem, NominalStart(problem)).estimate;
-  const Budget budget = Propagate(problem, fit, Linearize(problem, fit, Storey::kViews));
+  const Budget budget = BudgetOf(problem, fit, Linearize(problem, fit, Storey::kViews));
   // Dense: J = [x, one column a target], V = noise + shift per view + curvature for all.
   const int rows = 3 * 8 * 5;
   Eigen::MatrixXd j = Eigen::MatrixXd::Zero(rows, 4), v = 0.01 * Eigen::MatrixXd::Identity(rows, rows);
@@ -97,7 +97,7 @@ TEST(Propagate, EqualsTheTextbookForEveryScope) {
   }
 }
 
-TEST(Propagate, ASourceOfSeveralQuantitiesHasNoSensitivity) {
+TEST(Budget, ASourceOfSeveralQuantitiesHasNoSensitivity) {
   LineModel model;
   for (const int k : {LineModel::kCurvature, LineModel::kShift}) {
     model.quantity(k).role = Role::kConsider;
@@ -107,7 +107,7 @@ TEST(Propagate, ASourceOfSeveralQuantitiesHasNoSensitivity) {
   }
   const Problem problem = MakeProblem<LineModel>(std::make_shared<LineModel>(model), LineScene().Make());
   const Estimate fit = Refine(problem, NominalStart(problem)).estimate;
-  const Budget budget = Propagate(problem, fit, Linearize(problem, fit, Storey::kViews));
+  const Budget budget = BudgetOf(problem, fit, Linearize(problem, fit, Storey::kViews));
   ASSERT_EQ(budget.lines.size(), 1u);
   EXPECT_EQ(budget.lines[0].sensitivity.size(), 0);
   EXPECT_GT(budget.lines[0].covariance(0, 0), 0);

@@ -1,9 +1,9 @@
-#include "solver/uncertainty/validation.h"
 #include <gtest/gtest.h>
 #include <cmath>
 #include <numeric>
 #include "solver/random.h"
-#include "solver/uncertainty/coverage.h"
+#include "solver/uncertainty/gum.h"
+#include "solver/uncertainty/monte_carlo.h"
 
 namespace scancal {
 namespace {

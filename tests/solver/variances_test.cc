@@ -222,7 +222,7 @@ TEST(Neighbours, AreToldWhenTheyAreNotIndependent) {
   }
 }
 
-std::vector<Misfit> Misfits(const LineScene& scene, double u_curvature = 0) {
+std::vector<MisfitTest> Misfits(const LineScene& scene, double u_curvature = 0) {
   Problem problem = LineProblem(scene.Make(), {Role::kHold, Role::kEstimate});
   problem.quantities[LineModel::kCurvature].role = u_curvature > 0 ? Role::kConsider : Role::kHold;
   problem.quantities[LineModel::kCurvature].u = u_curvature;
@@ -233,7 +233,7 @@ std::vector<Misfit> Misfits(const LineScene& scene, double u_curvature = 0) {
 TEST(Misfit, SaysWhatAHeldQuantityShouldBe) {
   LineScene scene;
   scene.curvature = 0.05;
-  const std::vector<Misfit> misfits = Misfits(scene);
+  const std::vector<MisfitTest> misfits = Misfits(scene);
   ASSERT_EQ(misfits.size(), 1U);
   EXPECT_EQ(misfits[0].source, "curvature");
   EXPECT_LT(misfits[0].p, 1e-6);

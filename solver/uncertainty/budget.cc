@@ -1,4 +1,4 @@
-#include "solver/uncertainty/propagate.h"
+#include "solver/uncertainty/budget.h"
 #include <Eigen/QR>
 #include <algorithm>
 #include <map>
@@ -48,7 +48,7 @@ Eigen::MatrixXd Budget::Total() const {
   return total;
 }
 
-Budget Propagate(const Problem& problem, const Estimate& fit, const Linearization& linear) {
+Budget BudgetOf(const Problem& problem, const Estimate& fit, const Linearization& linear) {
   const std::vector<int> influences =
       problem.With({Scope::kSystem, Scope::kTarget, Scope::kView, Scope::kPoint}, Role::kConsider);
   const Eigen::Index system = linear.factor.cols(), n = std::ssize(influences);

@@ -1,4 +1,4 @@
-// The law of propagation of uncertainty, for a function of a few quantities.
+// The formulas of the GUM (JCGM 100) for an uncertainty statement: law of propagation, degrees of freedom, k.
 #pragma once
 #include <Eigen/Core>
 #include <span>
@@ -14,5 +14,16 @@ Eigen::MatrixXd Correlations(const Eigen::MatrixXd& covariance);  // r_ij = v_ij
 // Effective degrees of freedom of a sum of contributions u_i with dof_i each, infinite where u_i is exactly known:
 // (sum u_i^2)^2 / sum (u_i^4 / dof_i) (Welch-Satterthwaite, JCGM 100 eq. G.2b). For independent contributions only.
 double EffectiveDof(std::span<const double> contributions, std::span<const double> dofs);
+
+inline constexpr double kCoverage = 0.95;  // probability that a stated interval or region holds the true value
+
+// k with P(|t| <= k) = coverage for Student's t (GUM G.3); dof may be fractional; infinite below 1.
+double CoverageFactor(double coverage, double dof);
+// k of the joint region of n quantities: x with (x - x0)' C^-1 (x - x0) <= k^2 holds all of them with this coverage,
+// k^2 = n F(coverage; n, dof), or chi^2(coverage; n) of a known variance (Scheffe, The Analysis of Variance, 1959,
+// ch. 2; JCGM 102, 6.5.2). Larger than the k of one.
+double JointCoverageFactor(double coverage, double n, double dof);
+// P(F >= f) with dof1, dof2 degrees of freedom: the p of an F test.
+double FUpperTail(double f, double dof1, double dof2);
 
 }  // namespace scancal

@@ -21,8 +21,9 @@ struct Budget {
 };
 
 // With gain K = (J'J)^-1 J' (J whitened), each instance of a quantity of uncertainty u adds (K b)(K b)' u^2, b = dr/dq
-// (GUM 5.1.2 for correlated inputs, JCGM 102 6.2). Instances: one for the system, one per target, per view, per point,
-// as the scope says. Priors contribute their own unit noise. linear: of the views, at the fit.
-Budget Propagate(const Problem& problem, const Estimate& fit, const Linearization& linear);
+// (GUM 5.1.2 eq. (10), instances being independent; for several outputs JCGM 102, 6.2.1.3). Instances: one for the
+// system, one per target, per view, per point, as the scope says. Priors contribute their own unit noise. linear: of
+// the views, at the fit.
+Budget BudgetOf(const Problem& problem, const Estimate& fit, const Linearization& linear);
 
 }  // namespace scancal

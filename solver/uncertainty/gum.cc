@@ -1,4 +1,5 @@
-#include "solver/uncertainty/coverage.h"
+#include "solver/uncertainty/gum.h"
+#include <glog/logging.h>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -6,6 +7,25 @@
 #include <limits>
 
 namespace scancal {
+Eigen::MatrixXd PropagateCovariance(const Eigen::MatrixXd& sensitivity, const Eigen::MatrixXd& covariance) {
+  CHECK_EQ(sensitivity.cols(), covariance.rows());
+  return sensitivity * covariance * sensitivity.transpose();
+}
+
+Eigen::MatrixXd Correlations(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd inverse_u = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  return inverse_u.asDiagonal() * covariance * inverse_u.asDiagonal();
+}
+
+double EffectiveDof(std::span<const double> contributions, std::span<const double> dofs) {
+  CHECK_EQ(contributions.size(), dofs.size());
+  double variance = 0, sum = 0;
+  for (size_t i = 0; i < dofs.size(); ++i) {
+    variance += contributions[i] * contributions[i];
+    sum += std::pow(contributions[i], 4) / dofs[i];
+  }
+  return variance * variance / sum;
+}
 
 double CoverageFactor(double coverage, double dof) {
   if (!(dof >= 1)) return std::numeric_limits<double>::infinity();

@@ -1,6 +1,6 @@
-#include "solver/uncertainty/law_of_propagation.h"
 #include <gtest/gtest.h>
 #include <limits>
+#include "solver/uncertainty/gum.h"
 
 namespace scancal {
 namespace {
