@@ -7,7 +7,6 @@
 #include "io/json_file.h"
 #include "io/output_file.h"
 #include "report/calibration_json.h"
-#include "report/figures_json.h"
 #include "report/page.h"
 #include "report/text.h"
 
@@ -21,7 +20,7 @@ namespace {
 constexpr int kFewestTrials = 100, kMostTrials = 10'000'000;
 
 Result<Calibration> Calibrated(const std::vector<std::string>& arguments, const RefineChoice& choice) {
-  SCANCAL_RETURN_IF_ERROR(CheckLanguage(FLAGS_language));
+  SCANCAL_RETURN_IF_ERROR(CheckLanguage());
   SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, LoadAndEcho(arguments));
   const std::filesystem::path file = std::filesystem::path(FLAGS_out) / "calibration.json";
   SCANCAL_RETURN_IF_ERROR(OutputFile::Create(file));  // told before the work, not after it
@@ -29,13 +28,12 @@ Result<Calibration> Calibrated(const std::vector<std::string>& arguments, const 
   SCANCAL_ASSIGN_OR_RETURN(calibration.inputs, InputsOf(*scanner));
   calibration.command = CommandLine();
   calibration.version = SCANCAL_VERSION;
-  Json json = ToJson(calibration);
+  Enclosures with{.certificate = scanner->dataset().certificate};
+  SCANCAL_ASSIGN_OR_RETURN(with.data, scanner->Data());
   // What the other methods cannot do is no reason to lose this one's result.
   if (const Result<Comparison> comparison = scanner->Compare({.brief = true}); comparison.ok())
-    json["compare"] = ToJson(*comparison);
-  if (!scanner->dataset().certificate.is_null()) json["certificate"] = scanner->dataset().certificate;
-  SCANCAL_ASSIGN_OR_RETURN(json["data"], scanner->Data());
-  SCANCAL_RETURN_IF_ERROR(WriteJson(file, json));
+    with.comparison = *comparison;
+  SCANCAL_RETURN_IF_ERROR(WriteJson(file, ToJson(calibration, with)));
   return calibration;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 #include <vector>
+#include "io/result.h"
 
 namespace scancal {
 
@@ -26,5 +27,6 @@ inline constexpr int kTrusted = 0, kBadInput = 1, kUnreliable = 2;
 
 int Complain(const std::string& sentence);  // to standard error; returns kBadInput
 std::string CommandLine();                  // as typed, quoted where a shell needs it
+Result<void> CheckLanguage();               // that --language is one that the page of the report speaks
 
 }  // namespace scancal

@@ -13,7 +13,10 @@ namespace {
 
 Result<Comparison> Compared(const std::vector<std::string>& arguments) {
   SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, LoadAndEcho(arguments));
-  if (!FLAGS_surface.empty()) SCANCAL_RETURN_IF_ERROR(scanner->WriteSurface(FLAGS_surface));
+  if (!FLAGS_surface.empty()) {
+    const Result<void> written = scanner->WriteSurface(FLAGS_surface);
+    if (!written.ok()) return Error{"--surface: " + written.error().message};
+  }
   return scanner->Compare({});
 }
 

@@ -51,8 +51,7 @@ Result<std::vector<HashedFile>> InputsOf(const Scanner& scanner) {
     SCANCAL_ASSIGN_OR_RETURN(const std::string sha256, Sha256(file));
     inputs.push_back({file.filename().string(), sha256});
     if (!IsResult(file)) continue;
-    SCANCAL_ASSIGN_OR_RETURN(const Json json, ReadJson(file));
-    SCANCAL_ASSIGN_OR_RETURN(const Calibration result, CalibrationFromJson(json, file.string()));
+    SCANCAL_ASSIGN_OR_RETURN(const Calibration result, ReadCalibration(file));
     before = result.inputs;
   }
   inputs.insert(inputs.end(), before.begin(), before.end());

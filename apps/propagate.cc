@@ -2,11 +2,10 @@
 #include <gflags/gflags.h>
 #include <cstdio>
 #include "apps/command.h"
-#include "io/json_file.h"
 #include "io/output_file.h"
 #include "models/models.h"
 #include "report/calibration_json.h"
-#include "report/propagation.h"
+#include "report/text.h"
 
 DECLARE_string(out);
 DEFINE_string(point, "", "readings of one or more points, \"10,50,-20; 12,50,-20\"; may be given again");
@@ -29,8 +28,7 @@ bool KeepEveryPoint(const char*, const std::string& value) {
 
 Result<bool> Propagated(const std::string& file) {
   SCANCAL_ASSIGN_OR_RETURN(const Units units, ParseUnits(FLAGS_units));
-  SCANCAL_ASSIGN_OR_RETURN(const Json json, ReadJson(file));
-  SCANCAL_ASSIGN_OR_RETURN(const Calibration calibration, CalibrationFromJson(json, file));
+  SCANCAL_ASSIGN_OR_RETURN(const Calibration calibration, ReadCalibration(file));
   SCANCAL_ASSIGN_OR_RETURN(const ScannerKind* kind, FindScannerKind(calibration.model, file + ": model"));
   SCANCAL_ASSIGN_OR_RETURN(const Propagation propagation,
                            kind->propagate(calibration, {TypedPoints(), FLAGS_points_file, units}, FLAGS_distance));

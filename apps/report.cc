@@ -17,7 +17,7 @@ namespace {
 int Run(const std::vector<std::string>& arguments) {
   if (arguments.size() != 1)
     return Complain("found " + std::to_string(arguments.size()) + " arguments, expected one: a calibration.json");
-  const Result<void> spoken = CheckLanguage(FLAGS_language);
+  const Result<void> spoken = CheckLanguage();
   if (!spoken.ok()) return Complain(spoken.error().message);
   std::filesystem::path calibration = arguments[0];
   if (std::filesystem::is_directory(calibration)) calibration /= "calibration.json";
@@ -33,6 +33,15 @@ int Run(const std::vector<std::string>& arguments) {
 }
 
 }  // namespace
+
+Result<void> CheckLanguage() {
+  std::string languages;
+  for (const std::string language : kLanguages) {
+    if (FLAGS_language == language) return {};
+    languages += (languages.empty() ? "" : " or ") + language;
+  }
+  return Error{"--language: found \"" + FLAGS_language + "\", expected " + languages};
+}
 
 const Command kReportCommand = {
     "report",

@@ -1,16 +1,140 @@
 // scancal simulate
-#include "apps/simulate.h"
+#include "models/turntable/simulate.h"
 #include <gflags/gflags.h>
+#include <cstdio>
+#include "apps/command.h"
+#include "io/units.h"
+#include "models/robot_ball/write_simulated.h"
 
 DECLARE_string(out);
 DEFINE_string(model, "turntable", "what to simulate: turntable or robot-ball");
 DEFINE_bool(declare, false, "write what was simulated to dataset.yaml as influences");
 DEFINE_uint64(seed, 1, "of all random numbers: the same seed gives the same files");
 
+DEFINE_double(M, 123, "turntable: offset of the profiler from the axis, mm");
+DEFINE_double(N, 409, "turntable: offset of the profiler from the axis along depth, mm");
+DEFINE_double(tilt_x, 0, "turntable: tilt of the profiler about its X, deg");
+DEFINE_double(tilt_y, 0, "turntable: tilt of the profiler about its Y, deg");
+DEFINE_int32(placements, 3, "turntable: placements of the plate");
+DEFINE_int32(profiles, 200, "turntable: profiles per placement");
+DEFINE_int32(points, 200, "turntable: points per profile");
+DEFINE_double(sweep, 30, "turntable: sweep of the table, deg");
+DEFINE_double(line_length, 200, "turntable: length of the laser line, mm");
+DEFINE_double(noise, 0.05, "turntable: standard deviation along depth, mm");
+DEFINE_double(line_correlation, 1,
+              "turntable: integrated correlation length of the noise along the line, points; 1 is white");
+DEFINE_double(encoder_jitter, 0, "turntable: standard deviation of the angle, one error a profile, deg");
+DEFINE_double(form, 0, "turntable: smooth deviation of the plate over what the scan sees of it, mm rms");
+DEFINE_string(form_kind, "modes",
+              "turntable: modes (Legendre products, as u assumes), smooth (plane waves) or bent (long ones)");
+DEFINE_bool(one_plate, false, "turntable: the same form in every placement");
+DEFINE_double(outliers, 0, "turntable: share of points that are spikes, 0 to 1");
+DEFINE_double(background, 0, "turntable: share of every line that sees a wall 30 to 60 mm behind the plate, 0 to 1");
+DEFINE_double(missing, 0, "turntable: share of points without a return, 0 to 1");
+DEFINE_double(search_width_M, 20, "turntable: width of the search interval of M, mm; it is not centred on the truth");
+DEFINE_double(search_width_N, 30, "turntable: width of the search interval of N, mm");
+DEFINE_string(format, "csv", "turntable: csv (angles to 1e-6 deg, lengths to 0.1 um) or npy (every digit)");
+
+DEFINE_int32(stations, 8, "robot-ball: stations of the artifact");
+DEFINE_int32(poses, 8, "robot-ball: poses at each station");
+DEFINE_int32(translations, 6, "robot-ball: poses at the first station besides, that only translate");
+DEFINE_string(configuration, "spatial", "robot-ball: how the poses of a station differ: spatial, planar or collinear");
+DEFINE_double(ball_noise, 0.035, "robot-ball: standard deviation of a ball centre, mm per axis");
+DEFINE_double(repeatability, 0.04, "robot-ball: standard deviation of the flange's position, one a pose, mm per axis");
+DEFINE_double(u_artifact, 0.001, "robot-ball: standard uncertainty of the artifact's centres, mm per axis");
+DEFINE_int32(check_positions, 10, "robot-ball: positions of a two-ball scale that takes no part in the calibration");
+
 namespace scancal {
 namespace {
 
-std::vector<Simulator> Simulators() { return {TurntableSimulator(), RobotSimulator()}; }
+int RunTurntable() {
+  if (FLAGS_format != "csv" && FLAGS_format != "npy")
+    return Complain("--format: found \"" + FLAGS_format + "\", expected csv or npy");
+  if (FLAGS_form_kind != "modes" && FLAGS_form_kind != "smooth" && FLAGS_form_kind != "bent")
+    return Complain("--form_kind: found \"" + FLAGS_form_kind + "\", expected modes, smooth or bent");
+  TurntableScene scene;
+  scene.pose = {FLAGS_M, FLAGS_N, FLAGS_tilt_x * kDegree, FLAGS_tilt_y * kDegree, 0, 0};
+  scene.placements = FLAGS_placements;
+  scene.profiles = FLAGS_profiles;
+  scene.points = FLAGS_points;
+  scene.sweep = FLAGS_sweep * kDegree;
+  scene.line_length = FLAGS_line_length;
+  scene.noise_y = FLAGS_noise;
+  scene.line_correlation = FLAGS_line_correlation;
+  scene.encoder_jitter = FLAGS_encoder_jitter * kDegree;
+  scene.form = FLAGS_form;
+  scene.form_kind = FLAGS_form_kind == "modes"    ? FormKind::kModes
+                    : FLAGS_form_kind == "smooth" ? FormKind::kSmooth
+                                                  : FormKind::kBent;
+  scene.one_plate = FLAGS_one_plate;
+  scene.outliers = FLAGS_outliers;
+  scene.background = FLAGS_background;
+  scene.missing = FLAGS_missing;
+  scene.declare = FLAGS_declare;
+  scene.seed = FLAGS_seed;
+  scene.search = SearchAround(scene.pose, FLAGS_search_width_M, FLAGS_search_width_N);
+  const auto format = FLAGS_format == "npy" ? ScanFileFormat::kNpy : ScanFileFormat::kCsv;
+  const Result<void> written = WriteSimulatedTurntable(scene, format, FLAGS_out);
+  if (!written.ok()) return Complain(written.error().message);
+  std::printf(
+      "wrote %s: %d placements x %d profiles x %d points, M = %g mm, N = %g mm, seed %llu; truth.json holds the "
+      "truth\n",
+      FLAGS_out.c_str(), scene.placements, scene.profiles, scene.points, FLAGS_M, FLAGS_N,
+      static_cast<unsigned long long>(scene.seed));
+  return kTrusted;
+}
+
+int RunRobot() {
+  RobotScene scene;
+  if (FLAGS_configuration == "planar") {
+    scene.configuration = PoseConfiguration::kPlanar;
+  } else if (FLAGS_configuration == "collinear") {
+    scene.configuration = PoseConfiguration::kCollinear;
+  } else if (FLAGS_configuration != "spatial") {
+    return Complain("--configuration: found \"" + FLAGS_configuration + "\", expected spatial, planar or collinear");
+  }
+  scene.stations = FLAGS_stations;
+  scene.poses = FLAGS_poses;
+  scene.translations = FLAGS_translations;
+  scene.ball_noise = FLAGS_ball_noise;
+  scene.repeatability = FLAGS_repeatability;
+  scene.u_spheres = FLAGS_u_artifact;
+  scene.check_positions = FLAGS_check_positions;
+  scene.seed = scene.noise_seed = FLAGS_seed;
+  const Result<void> written = WriteSimulatedRobot(scene, FLAGS_declare, FLAGS_out);
+  if (!written.ok()) return Complain(written.error().message);
+  std::printf("wrote %s: %d stations x %d poses and %d that only translate, seed %llu; truth.json holds the truth\n",
+              FLAGS_out.c_str(), scene.stations, scene.poses, scene.translations,
+              static_cast<unsigned long long>(scene.seed));
+  return kTrusted;
+}
+
+struct Simulator {
+  const char* model;               // as in dataset.yaml
+  std::vector<CommandFlag> flags;  // its own, in the order of the help; out, seed and declare belong to all
+  int (*run)();                    // writes to --out; exit code
+};
+
+std::vector<Simulator> Simulators() {
+  return {{"turntable",
+           {{"M"},           {"N"},         {"tilt_x"},           {"tilt_y"},
+            {"placements"},  {"profiles"},  {"points"},           {"sweep"},
+            {"line_length"}, {"noise"},     {"line_correlation"}, {"encoder_jitter"},
+            {"form"},        {"form_kind"}, {"one_plate"},        {"outliers"},
+            {"background"},  {"missing"},   {"search_width_M"},   {"search_width_N"},
+            {"format"}},
+           &RunTurntable},
+          {"robot-ball",
+           {{"stations"},
+            {"poses"},
+            {"translations"},
+            {"configuration"},
+            {"ball_noise"},
+            {"repeatability"},
+            {"u_artifact"},
+            {"check_positions"}},
+           &RunRobot}};
+}
 
 std::vector<CommandFlag> Flags() {
   std::vector<CommandFlag> flags = {{"model"}, {"out", "folder of the data set to write"}, {"seed"}, {"declare"}};

@@ -3,7 +3,6 @@
 #include <cstdio>
 #include "apps/command.h"
 #include "apps/load.h"
-#include "io/json_file.h"
 #include "io/points.h"
 #include "report/calibration_json.h"
 
@@ -16,8 +15,7 @@ namespace {
 Result<int64_t> Transformed(const std::vector<std::string>& arguments) {
   SCANCAL_ASSIGN_OR_RETURN(const Dataset dataset, ReadOnlyArgument(arguments));
   SCANCAL_ASSIGN_OR_RETURN(const ScannerKind* kind, FindScannerKind(dataset));
-  SCANCAL_ASSIGN_OR_RETURN(const Json json, ReadJson(FLAGS_calibration));
-  SCANCAL_ASSIGN_OR_RETURN(const Calibration calibration, CalibrationFromJson(json, FLAGS_calibration));
+  SCANCAL_ASSIGN_OR_RETURN(const Calibration calibration, ReadCalibration(FLAGS_calibration));
   if (calibration.model != dataset.model)
     return Error{"the calibration is of model \"" + calibration.model + "\", the data set of \"" + dataset.model +
                  "\""};

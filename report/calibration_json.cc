@@ -1,14 +1,60 @@
 #include "report/calibration_json.h"
 #include <cmath>
-#include "report/figures_json.h"
-#include "report/montecarlo_json.h"
-#include "report/uncertainty_json.h"
+#include "solver/uncertainty/gum.h"
 
 namespace scancal {
 namespace {
 
-constexpr int kFormatVersion = 1;
-constexpr double kCoverage = 0.95;  // of every U
+// JSON has no infinity: what is not finite is null.
+Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+// {"columns": [...], "units": [...], "rows": [[...], ...]}, and "names" of the rows if they have any.
+Json ToJson(const NumberTable& table) {
+  Json units = Json::array(), rows = Json::array();
+  for (const Unit unit : table.units) units.push_back(Name(unit));
+  for (const std::vector<double>& row : table.rows) {
+    Json numbers = Json::array();
+    for (const double number : row) numbers.push_back(Number(number));
+    rows.push_back(std::move(numbers));
+  }
+  Json json = {{"columns", table.columns}, {"units", units}, {"rows", rows}};
+  if (!table.names.empty()) json["names"] = table.names;
+  return json;
+}
+
+Json ToJson(const NumberTables& tables) {
+  Json json = Json::object();
+  for (const auto& [name, table] : tables) json[name] = ToJson(table);
+  return json;
+}
+
+// {"targets": [{"name": ..., tables by name}]}; empty if no target has a scene.
+Json SceneJson(const std::vector<TargetSummary>& targets) {
+  Json list = Json::array();
+  for (const TargetSummary& target : targets) {
+    if (target.scene.empty()) continue;
+    list.push_back({{"name", target.name}});
+    list.back().update(ToJson(target.scene));
+  }
+  return list.empty() ? Json::object() : Json{{"targets", list}};
+}
+
+// [{"method", "note", "cells": [{"column", "value", "u"}]}], without computing times: they are never the same.
+Json CompareJson(const Comparison& comparison) {
+  Json list = Json::array();
+  for (const ComparisonRow& row : comparison.rows) {
+    Json cells = Json::array();
+    for (size_t k = 0; k < row.cells.size(); ++k) {
+      const ComparisonCell& cell = row.cells[k];
+      if (comparison.columns[k].is_time) continue;
+      cells.push_back({{"column", comparison.columns[k].name},
+                       {"value", cell.value ? Number(*cell.value) : Json(nullptr)},
+                       {"u", cell.u > 0 ? Number(cell.u) : Json(nullptr)}});
+    }
+    list.push_back({{"method", row.method}, {"note", row.note}, {"cells", cells}});
+  }
+  return list;
+}
 
 Json Whole(double count) { return static_cast<int64_t>(count); }
 
@@ -154,9 +200,28 @@ Json JackknifeJson(const Calibration& calibration) {
   return list;
 }
 
+Json MonteCarloJson(const MonteCarloSummary& summary) {
+  if (summary.trials == 0) return Json::object();
+  Json json = {{"trials", static_cast<int64_t>(summary.trials)},
+               {"failed", static_cast<int64_t>(summary.failed)},
+               {"seed", summary.seed},
+               {"digits", summary.digits},
+               {"stable", summary.stable},
+               {"parameters", Json::array()}};
+  for (const MonteCarloParameter& p : summary.parameters) {
+    Json each = {{"name", p.name}};
+    for (const auto& [key, number] : kMonteCarloNumbers) each[key] = Number(p.*number);
+    each["verdict"] = p.verdict;
+    each["histogram"] = {{"edges", p.edges}, {"counts", Json::array()}};
+    for (const double count : p.counts) each["histogram"]["counts"].push_back(static_cast<int64_t>(count));
+    json["parameters"].push_back(std::move(each));
+  }
+  return json;
+}
+
 }  // namespace
 
-Json ToJson(const Calibration& c) {
+Json ToJson(const Calibration& c, const Enclosures& with) {
   Json json = {{"scancal", kFormatVersion}, {"model", c.model}, {"name", c.name}, {"residual", c.residual}};
   json["status"] = c.ok() ? "ok" : "unreliable";
   json["unreliable"] = c.unreliable;
@@ -192,56 +257,23 @@ Json ToJson(const Calibration& c) {
   json["misfits"] = MisfitsJson(c);
   json["budget"] = BudgetJson(c);
   json["influences"] = InfluencesJson(c);
-  json["compare"] = Json::array();
+  json["compare"] = CompareJson(with.comparison);
   json["surface"] = ToJson(c.surface);
   json["jackknife"] = JackknifeJson(c);
-  json["montecarlo"] = ToJson(c.monte_carlo);
+  json["montecarlo"] = MonteCarloJson(c.monte_carlo);
   json["residuals"] = {{"targets", Json::array()}};
   for (const TargetSummary& target : c.targets) json["residuals"]["targets"].push_back(ResidualsJson(target));
   json["scene"] = SceneJson(c.targets);
   json["volume"] = c.volume.rows.empty() ? Json::object() : ToJson(c.volume);
-  json["data"] = Json::object();
+  json["data"] = with.data;
   json["converged"] = c.converged;
   json["iterations"] = c.iterations;
   json["inputs"] = Json::array();
   for (const HashedFile& input : c.inputs) json["inputs"].push_back({{"file", input.file}, {"sha256", input.sha256}});
   json["command"] = c.command;
   json["version"] = c.version;
+  if (!with.certificate.is_null()) json["certificate"] = with.certificate;
   return json;
-}
-
-Result<Calibration> CalibrationFromJson(const Json& json, const std::string& file) {
-  const auto expected = [&](const std::string& what) {
-    return Error{file + ": expected " + what + "; is it a calibration.json?"};
-  };
-  if (!json.is_object() || !json.contains("scancal") || !json["scancal"].is_number())
-    return expected("a format version, \"scancal\": 1");
-  if (json["scancal"] != kFormatVersion) return expected("format version 1, found " + json["scancal"].dump());
-  if (!json.contains("model") || !json["model"].is_string()) return expected("\"model\"");
-  if (!json.contains("parameters") || !json["parameters"].is_array()) return expected("a list of \"parameters\"");
-  Calibration result;
-  result.model = json["model"];
-  if (!json.contains("status") || !json["status"].is_string()) return expected("\"status\"");
-  if (json["status"] != "ok") result.unreliable.push_back("the calibration says so of itself");
-  for (const Json& each : json["parameters"]) {
-    if (!each.is_object() || !each.contains("name") || !each["name"].is_string())
-      return expected("a name for every parameter");
-    const std::string name = each["name"];
-    if (!each.contains("value") || !each["value"].is_number()) return expected("a number as \"value\" of " + name);
-    Parameter& parameter = result.parameters.emplace_back();
-    parameter.name = name;
-    parameter.value = each["value"];
-  }
-  if (json.contains("inputs") && json["inputs"].is_array())
-    for (const Json& each : json["inputs"])
-      if (each.is_object() && each.contains("file") && each["file"].is_string() && each.contains("sha256") &&
-          each["sha256"].is_string())
-        result.inputs.push_back({each["file"], each["sha256"]});
-  if (json.contains("montecarlo")) {
-    SCANCAL_ASSIGN_OR_RETURN(result.monte_carlo, MonteCarloFromJson(json["montecarlo"], file));
-  }
-  SCANCAL_RETURN_IF_ERROR(ReadUncertainties(json, file, &result));
-  return result;
 }
 
 }  // namespace scancal

@@ -6,14 +6,13 @@
 
 namespace scancal {
 
+inline constexpr const char* kLanguages[] = {"en", "de"};  // that the page speaks
+
 struct PageChoice {
   std::filesystem::path html, pdf, dcc;  // to be written; empty: not
   std::filesystem::path previous;        // an earlier calibration.json: as found, as left; empty: none
-  std::string language = "en";           // or "de"
+  std::string language = kLanguages[0];
 };
-
-// An Error for a language that the page does not speak.
-Result<void> CheckLanguage(const std::string& language);
 
 // Of a calibration.json, by the program in report/page (Python, with Jinja2 and Matplotlib), which reads nothing else
 // and writes whole files or none. False: it has said why on standard error. An Error: it could not be started.

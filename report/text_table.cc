@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "solver/uncertainty/gum.h"
 
 namespace scancal {
 namespace {
@@ -66,5 +67,7 @@ std::string Concise(double value, double u) {
   if (last >= 0) return Fixed(value, 0) + "(" + Fixed(u, 0) + ")";
   return Fixed(value, -last) + "(" + Fixed(u / std::pow(10, last), 0) + ")";
 }
+
+std::string CoverageText() { return fmt::format("{:g} %", 100 * kCoverage); }
 
 }  // namespace scancal

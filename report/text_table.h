@@ -21,4 +21,6 @@ std::string Concise(double value, double u);
 std::string Count(double number);                   // whole, without exponent
 std::string Significant(double value, int digits);  // never in exponents between 1e-4 and 1e6
 
+std::string CoverageText();  // "95 %", of kCoverage
+
 }  // namespace scancal

@@ -126,7 +126,7 @@ Result<Comparison> FlangeBallScanner::Compare(const CompareChoice&) const {
 }
 
 Result<void> FlangeBallScanner::WriteSurface(const std::filesystem::path&) const {
-  return Error{"--surface: the model flange-ball has no search over a box"};
+  return Error{"the model flange-ball has no search over a box"};
 }
 
 Result<void> CheckDetermined(const Solution& solution) {

@@ -64,7 +64,7 @@ Result<Calibration> RobotScanner::Calibrate(const RefineChoice& choice) const {
 }
 
 Result<void> RobotScanner::WriteSurface(const std::filesystem::path&) const {
-  return Error{"--surface: a robot's calibration searches no grid; it is for turntables"};
+  return Error{"a robot's calibration searches no grid; it is for turntables"};
 }
 
 std::string RobotScanner::Describe() const {

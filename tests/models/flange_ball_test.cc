@@ -229,7 +229,7 @@ TEST_F(FlangeBallFilesTest, TheBallOfEveryPoseIsWrittenInTheBase) {
 }
 
 TEST_F(FlangeBallFilesTest, WhatTheModelCannotDoIsSaid) {
-  EXPECT_THAT(scanner_->WriteSurface("surface.csv").error().message, HasSubstr("--surface: the model flange-ball"));
+  EXPECT_THAT(scanner_->WriteSurface("surface.csv").error().message, HasSubstr("the model flange-ball"));
   EXPECT_THAT(kFlangeBall.propagate({}, {}, false).error().message, HasSubstr("measures no points"));
   EXPECT_THAT(scanner_->Calibrate({"plane"}).error().message, HasSubstr("found \"plane\""));
   auto cloud = *CreatePointCloud(folder_.path() / "balls.csv");

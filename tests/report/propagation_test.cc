@@ -1,8 +1,8 @@
-#include "report/propagation.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <limits>
 #include "io/units.h"
+#include "report/text.h"
 
 namespace scancal {
 namespace {

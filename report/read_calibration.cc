@@ -1,7 +1,7 @@
-#include "report/uncertainty_json.h"
 #include <Eigen/Eigenvalues>
 #include <limits>
 #include <optional>
+#include "report/calibration_json.h"
 
 namespace scancal {
 namespace {
@@ -136,8 +136,7 @@ bool ReadVolume(const Json& json, NumberTable* volume) {
   return true;
 }
 
-}  // namespace
-
+// The parameters' names and values are in `calibration`.
 Result<void> ReadUncertainties(const Json& json, const std::string& file, Calibration* calibration) {
   const auto expected = [&](const std::string& what) {
     return Error{file + ": expected " + what + "; is it a calibration.json?"};
@@ -156,6 +155,72 @@ Result<void> ReadUncertainties(const Json& json, const std::string& file, Calibr
   if (json.contains("volume") && !json["volume"].empty() && !ReadVolume(json["volume"], &calibration->volume))
     return expected("a table with columns, units and rows as \"volume\"");
   return {};
+}
+
+// A number that is not finite comes back as not a number.
+Result<MonteCarloSummary> MonteCarloFromJson(const Json& json, const std::string& file) {
+  MonteCarloSummary summary;
+  if (json.empty()) return summary;
+  try {
+    summary.trials = json.at("trials");
+    summary.failed = json.at("failed");
+    summary.seed = json.at("seed");
+    summary.digits = json.at("digits");
+    summary.stable = json.at("stable");
+    for (const Json& each : json.at("parameters")) {
+      MonteCarloParameter& p = summary.parameters.emplace_back();
+      p.name = each.at("name");
+      for (const auto& [key, number] : kMonteCarloNumbers)
+        p.*number = each.at(key).is_null() ? std::numeric_limits<double>::quiet_NaN() : each.at(key).get<double>();
+      p.verdict = each.at("verdict");
+      p.edges = each.at("histogram").at("edges").get<std::vector<double>>();
+      p.counts = each.at("histogram").at("counts").get<std::vector<double>>();
+    }
+  } catch (const Json::exception&) {
+    return Error{file + ": expected \"montecarlo\" as scancal montecarlo writes it; is it a calibration.json?"};
+  }
+  return summary;
+}
+
+}  // namespace
+
+Result<Calibration> CalibrationFromJson(const Json& json, const std::string& file) {
+  const auto expected = [&](const std::string& what) {
+    return Error{file + ": expected " + what + "; is it a calibration.json?"};
+  };
+  if (!json.is_object() || !json.contains("scancal") || !json["scancal"].is_number())
+    return expected("a format version, \"scancal\": 1");
+  if (json["scancal"] != kFormatVersion) return expected("format version 1, found " + json["scancal"].dump());
+  if (!json.contains("model") || !json["model"].is_string()) return expected("\"model\"");
+  if (!json.contains("parameters") || !json["parameters"].is_array()) return expected("a list of \"parameters\"");
+  Calibration result;
+  result.model = json["model"];
+  if (!json.contains("status") || !json["status"].is_string()) return expected("\"status\"");
+  if (json["status"] != "ok") result.unreliable.push_back("the calibration says so of itself");
+  for (const Json& each : json["parameters"]) {
+    if (!each.is_object() || !each.contains("name") || !each["name"].is_string())
+      return expected("a name for every parameter");
+    const std::string name = each["name"];
+    if (!each.contains("value") || !each["value"].is_number()) return expected("a number as \"value\" of " + name);
+    Parameter& parameter = result.parameters.emplace_back();
+    parameter.name = name;
+    parameter.value = each["value"];
+  }
+  if (json.contains("inputs") && json["inputs"].is_array())
+    for (const Json& each : json["inputs"])
+      if (each.is_object() && each.contains("file") && each["file"].is_string() && each.contains("sha256") &&
+          each["sha256"].is_string())
+        result.inputs.push_back({each["file"], each["sha256"]});
+  if (json.contains("montecarlo")) {
+    SCANCAL_ASSIGN_OR_RETURN(result.monte_carlo, MonteCarloFromJson(json["montecarlo"], file));
+  }
+  SCANCAL_RETURN_IF_ERROR(ReadUncertainties(json, file, &result));
+  return result;
+}
+
+Result<Calibration> ReadCalibration(const std::filesystem::path& file) {
+  SCANCAL_ASSIGN_OR_RETURN(const Json json, ReadJson(file));
+  return CalibrationFromJson(json, file.string());
 }
 
 }  // namespace scancal

@@ -1,11 +1,21 @@
-#include "report/propagation.h"
 #include <fmt/format.h>
 #include <cmath>
 #include "io/units.h"
+#include "report/text.h"
 #include "report/text_table.h"
 
 namespace scancal {
 namespace {
+
+std::string CellText(const ComparisonCell& cell, int digits) {
+  if (!cell.value) return "-";
+  if (cell.u > 0) return Concise(*cell.value, cell.u);
+  return digits == 0 ? Count(*cell.value) : Significant(*cell.value, digits);
+}
+
+std::string OneDecimal(double digits) { return fmt::format("{:.1f}", std::floor(10 * digits) / 10); }  // never up
+
+std::string CountOrNone(int count) { return count > 0 ? std::to_string(count) : "-"; }
 
 constexpr const char* kAxes[] = {"X", "Y", "Z"};
 
@@ -50,10 +60,26 @@ std::string DistanceTable(const Propagation& propagation) {
 
 }  // namespace
 
+std::string ToText(const Comparison& comparison) {
+  std::vector<std::string> header = {"method"};
+  for (const ComparisonColumn& column : comparison.columns) header.push_back(column.name);
+  TextTable table(header);
+  std::string notes;
+  for (const ComparisonRow& row : comparison.rows) {
+    if (!row.note.empty()) notes += row.method + ": " + row.note + "\n";
+    std::vector<std::string> cells = {row.method};
+    for (size_t k = 0; k < row.cells.size(); ++k) cells.push_back(CellText(row.cells[k], comparison.columns[k].digits));
+    cells.resize(header.size(), "-");
+    table.Add(cells);
+  }
+  return table.Text() + notes;
+}
+
 std::string ToText(const Propagation& propagation) {
   std::string text = PointTable(propagation);
   if (!propagation.distances.empty()) text += "\n" + DistanceTable(propagation);
-  text += "\nin brackets: u, in units of the last digit; U = k u: 95 %, largest over all directions\n";
+  text +=
+      "\nin brackets: u, in units of the last digit; U = k u: " + CoverageText() + ", largest over all directions\n";
   for (const std::string& note : propagation.notes) text += note + "\n";
   return text;
 }
@@ -87,6 +113,27 @@ std::string ToCsv(const Propagation& propagation) {
     text += "\n";
   }
   return text;
+}
+
+std::string ToText(const Selftest& selftest) {
+  TextTable table({"case", "difficulty", "observations", "parameters", "digits", "required", "digits of u", "required",
+                   "iterations", ""});
+  std::string notes;
+  size_t passed = 0;
+  for (const SelftestRow& row : selftest.rows) {
+    table.Add({row.name, row.level.empty() ? "-" : row.level, CountOrNone(row.observations),
+               CountOrNone(row.parameters), OneDecimal(row.values.reached), OneDecimal(row.values.required),
+               OneDecimal(row.deviations.reached), OneDecimal(row.deviations.required), CountOrNone(row.iterations),
+               row.pass() ? "pass" : "FAIL"});
+    if (!row.note.empty()) notes += row.name + ": " + row.note + "\n";
+    passed += row.pass();
+  }
+  return table.Text() +
+         "digits: -log10 of the relative error of the estimate, and of the standard uncertainty u, nearest to failing\n"
+         "GUM: published results, to one unit of their last digit\n" +
+         notes +
+         fmt::format("\n{} of {} cases passed\nselftest: {}\n", passed, selftest.rows.size(),
+                     selftest.ok() ? "pass" : "FAIL");
 }
 
 }  // namespace scancal
