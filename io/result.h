@@ -8,9 +8,13 @@
 namespace scancal {
 
 // What the world did wrong (a file, a flag, a scene), in words for the person who can mend it.
-// Our own mistakes are CHECKs; unhappy numbers are a field of the Calibration.
+// Our own mistakes are CHECKs; unhappy numbers are a field of the Calibration. kind: what a caller may act on; nobody
+// compares messages.
+enum class ErrorKind { kOther, kMissingColumns };
+
 struct Error {
   std::string message;
+  ErrorKind kind = ErrorKind::kOther;
 };
 
 template <class T>

@@ -51,7 +51,8 @@ Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const 
       match = ChosenColumn{.name = wanted.name, .index = i, .factor = *factor};
     }
     if (!match && wanted.required) {
-      return Error{place + ": found the columns " + Listed(found) + ", expected also " + PossibleNames(wanted)};
+      return Error{place + ": found the columns " + Listed(found) + ", expected also " + PossibleNames(wanted),
+                   ErrorKind::kMissingColumns};
     }
     if (match) chosen.push_back(*match);
   }
@@ -62,7 +63,8 @@ Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const 
   if (!format.one_of.empty() && std::none_of(format.one_of.begin(), format.one_of.end(), whole)) {
     std::string groups;
     for (const auto& group : format.one_of) groups += (groups.empty() ? "" : "; or ") + Listed(group);
-    return Error{place + ": found the columns " + Listed(found) + ", expected also " + groups};
+    return Error{place + ": found the columns " + Listed(found) + ", expected also " + groups,
+                 ErrorKind::kMissingColumns};
   }
   if (chosen.empty()) return Error{place + ": found the columns " + Listed(found) + ", none of them is known"};
   return chosen;

@@ -87,7 +87,7 @@ Result<void> CsvReader::ReadHeader() {
     return Error{place + ": found numbers, expected a header line with the names of the columns" + wrong_separator};
   }
   auto chosen = ChooseColumns(format_, header_, place);
-  if (!chosen.ok()) return Error{chosen.error().message + wrong_separator};
+  if (!chosen.ok()) return Error{chosen.error().message + wrong_separator, chosen.error().kind};
   columns_.resize(header_.size());
   for (const ChosenColumn& column : *chosen) {
     columns_[column.index].target = names_.size();

@@ -62,7 +62,7 @@ class TableReader {
     for (const TableColumn& column : wanted_)
       format.columns.push_back({column.name, column.dimension, column.required});
     const auto chosen = ChooseColumns(format, header_, nameless_ ? table_.name_ : Place());
-    if (!chosen.ok()) return Error{chosen.error().message + WrongSeparator(line_)};
+    if (!chosen.ok()) return Error{chosen.error().message + WrongSeparator(line_), chosen.error().kind};
     columns_.resize(header_.size());
     for (const ChosenColumn& column : *chosen) {
       const auto wanted =

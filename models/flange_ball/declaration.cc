@@ -56,8 +56,7 @@ ToolDeclaration ReadDeclaration(YamlMap yaml, const std::filesystem::path& folde
 Result<Table> ReadTable(const std::filesystem::path& file, const FlangeBallDeclaration& declaration, size_t joints) {
   auto table = Table::Read(file, JointColumns(joints), declaration.dataset.units, declaration.columns);
   if (!table.ok()) {
-    const bool nameless =
-        declaration.columns.empty() && table.error().message.find("expected also") != std::string::npos;
+    const bool nameless = declaration.columns.empty() && table.error().kind == ErrorKind::kMissingColumns;
     return Error{table.error().message +
                  (nameless ? "; if the file has no header, declare columns: [q1, q2, ...]" : "")};
   }

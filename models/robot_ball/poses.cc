@@ -23,7 +23,7 @@ std::vector<TableColumn> Columns(size_t joints) {
 
 Result<Table> ReadTable(const std::filesystem::path& path, size_t joints, const Units& units) {
   auto table = Table::Read(path, Columns(joints), units);
-  if (!table.ok() && table.error().message.find("expected also") != std::string::npos)
+  if (!table.ok() && table.error().kind == ErrorKind::kMissingColumns)
     return Error{table.error().message + (joints > 0 ? "; robot: links declares " + std::to_string(joints) +
                                                            " joints, without it the poses are those of the flange"
                                                      : "; joint angles need robot: links in dataset.yaml")};
