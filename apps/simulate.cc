@@ -4,7 +4,7 @@
 #include <cstdio>
 #include "apps/command.h"
 #include "io/units.h"
-#include "models/robot_ball/write_simulated.h"
+#include "models/robot_ball/simulate.h"
 
 DECLARE_string(out);
 DEFINE_string(model, "turntable", "what to simulate: turntable or robot-ball");
@@ -85,11 +85,11 @@ int RunTurntable() {
 }
 
 int RunRobot() {
-  RobotScene scene;
+  robot_ball::Scene scene;
   if (FLAGS_configuration == "planar") {
-    scene.configuration = PoseConfiguration::kPlanar;
+    scene.configuration = robot_ball::PoseConfiguration::kPlanar;
   } else if (FLAGS_configuration == "collinear") {
-    scene.configuration = PoseConfiguration::kCollinear;
+    scene.configuration = robot_ball::PoseConfiguration::kCollinear;
   } else if (FLAGS_configuration != "spatial") {
     return Complain("--configuration: found \"" + FLAGS_configuration + "\", expected spatial, planar or collinear");
   }
@@ -101,7 +101,7 @@ int RunRobot() {
   scene.u_spheres = FLAGS_u_artifact;
   scene.check_positions = FLAGS_check_positions;
   scene.seed = scene.noise_seed = FLAGS_seed;
-  const Result<void> written = WriteSimulatedRobot(scene, FLAGS_declare, FLAGS_out);
+  const Result<void> written = WriteSimulated(scene, FLAGS_declare, FLAGS_out);
   if (!written.ok()) return Complain(written.error().message);
   std::printf("wrote %s: %d stations x %d poses and %d that only translate, seed %llu; truth.json holds the truth\n",
               FLAGS_out.c_str(), scene.stations, scene.poses, scene.translations,

@@ -1,12 +1,11 @@
-#include "models/selftest/gum.h"
+// The worked examples of the GUM (JCGM 100:2008, Annex H).
 #include <cmath>
 #include <limits>
-#include "models/selftest/known.h"
-#include "models/selftest/regression.h"
-#include "models/selftest/sensitivity.h"
+#include "models/selftest/fit.h"
+#include "models/selftest/selftest.h"
 #include "solver/uncertainty/gum.h"
 
-namespace scancal {
+namespace scancal::selftest {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -110,4 +109,4 @@ SelftestRow CheckThermometer() {
           .note = solved.fit.message};
 }
 
-}  // namespace scancal
+}  // namespace scancal::selftest
