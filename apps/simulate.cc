@@ -15,6 +15,15 @@ DEFINE_double(M, 123, "turntable: offset of the profiler from the axis, mm");
 DEFINE_double(N, 409, "turntable: offset of the profiler from the axis along depth, mm");
 DEFINE_double(tilt_x, 0, "turntable: tilt of the profiler about its X, deg");
 DEFINE_double(tilt_y, 0, "turntable: tilt of the profiler about its Y, deg");
+DEFINE_double(scale_y, 0, "turntable: relative scale error of depth, true = shown (1 + this)");
+DEFINE_double(scale_z, 0, "turntable: relative scale error along the line");
+DEFINE_double(shear, 0, "turntable: error of the right angle between depth and line, deg");
+DEFINE_double(linearity, 0, "turntable: error of depth that grows with the square of the distance from its middle, mm");
+DEFINE_double(encoder_cos1, 0, "turntable: error of the encoder, once a turn, deg");
+DEFINE_double(encoder_sin1, 0, "turntable: the same, a quarter turn on, deg");
+DEFINE_double(encoder_cos2, 0, "turntable: error of the encoder, twice a turn, deg");
+DEFINE_double(encoder_sin2, 0, "turntable: the same, an eighth of a turn on, deg");
+DEFINE_double(expansion, 0, "turntable: relative expansion of the mount, which moves M and N");
 DEFINE_int32(placements, 3, "turntable: placements of the plate");
 DEFINE_int32(profiles, 200, "turntable: profiles per placement");
 DEFINE_int32(points, 200, "turntable: points per profile");
@@ -47,13 +56,30 @@ DEFINE_int32(check_positions, 10, "robot-ball: positions of a two-ball scale tha
 namespace scancal {
 namespace {
 
+// Each has a flag of its name.
+const Quantities& SystemQuantities() {
+  static const Quantities quantities = [] {
+    Quantities all = Turntable(Turntable::Residuals::kDepth).quantities();
+    all.resize(turntable::System::kQuantities);
+    return all;
+  }();
+  return quantities;
+}
+
+double NumberOfFlag(const std::string& name) {
+  return std::stod(gflags::GetCommandLineFlagInfoOrDie(name.c_str()).current_value);
+}
+
 int RunTurntable() {
   if (FLAGS_format != "csv" && FLAGS_format != "npy")
     return Complain("--format: found \"" + FLAGS_format + "\", expected csv or npy");
   if (FLAGS_form_kind != "modes" && FLAGS_form_kind != "smooth" && FLAGS_form_kind != "bent")
     return Complain("--form_kind: found \"" + FLAGS_form_kind + "\", expected modes, smooth or bent");
   TurntableScene scene;
-  scene.pose = {FLAGS_M, FLAGS_N, FLAGS_tilt_x * kDegree, FLAGS_tilt_y * kDegree, 0, 0};
+  for (size_t k = 0; k < scene.system.q.size(); ++k) {
+    const Quantity& quantity = SystemQuantities()[k];
+    scene.system[k] = NumberOfFlag(quantity.name) * (quantity.unit == Unit::kRad ? kDegree : 1);
+  }
   scene.placements = FLAGS_placements;
   scene.profiles = FLAGS_profiles;
   scene.points = FLAGS_points;
@@ -72,7 +98,7 @@ int RunTurntable() {
   scene.missing = FLAGS_missing;
   scene.declare = FLAGS_declare;
   scene.seed = FLAGS_seed;
-  scene.search = SearchAround(scene.pose, FLAGS_search_width_M, FLAGS_search_width_N);
+  scene.search = SearchAround(scene.system, FLAGS_search_width_M, FLAGS_search_width_N);
   const auto format = FLAGS_format == "npy" ? ScanFileFormat::kNpy : ScanFileFormat::kCsv;
   const Result<void> written = WriteSimulatedTurntable(scene, format, FLAGS_out);
   if (!written.ok()) return Complain(written.error().message);
@@ -101,7 +127,7 @@ int RunRobot() {
   scene.u_spheres = FLAGS_u_artifact;
   scene.check_positions = FLAGS_check_positions;
   scene.seed = scene.noise_seed = FLAGS_seed;
-  const Result<void> written = WriteSimulated(scene, FLAGS_declare, FLAGS_out);
+  const Result<void> written = robot_ball::WriteSimulated(scene, FLAGS_declare, FLAGS_out);
   if (!written.ok()) return Complain(written.error().message);
   std::printf("wrote %s: %d stations x %d poses and %d that only translate, seed %llu; truth.json holds the truth\n",
               FLAGS_out.c_str(), scene.stations, scene.poses, scene.translations,
@@ -116,14 +142,13 @@ struct Simulator {
 };
 
 std::vector<Simulator> Simulators() {
-  return {{"turntable",
-           {{"M"},           {"N"},         {"tilt_x"},           {"tilt_y"},
-            {"placements"},  {"profiles"},  {"points"},           {"sweep"},
-            {"line_length"}, {"noise"},     {"line_correlation"}, {"encoder_jitter"},
-            {"form"},        {"form_kind"}, {"one_plate"},        {"outliers"},
-            {"background"},  {"missing"},   {"search_width_M"},   {"search_width_N"},
-            {"format"}},
-           &RunTurntable},
+  std::vector<CommandFlag> turntable;
+  for (const Quantity& quantity : SystemQuantities()) turntable.push_back({quantity.name.c_str()});
+  for (const char* name : {"placements", "profiles", "points", "sweep", "line_length", "noise", "line_correlation",
+                           "encoder_jitter", "form", "form_kind", "one_plate", "outliers", "background", "missing",
+                           "search_width_M", "search_width_N", "format"})
+    turntable.push_back({name});
+  return {{"turntable", turntable, &RunTurntable},
           {"robot-ball",
            {{"stations"},
             {"poses"},

@@ -176,7 +176,7 @@ SphereFit FitSphere(std::span<const Eigen::Vector3d> points, const SphereChoice&
   result.covariance.topLeftCorner(x.size(), x.size()) = NaiveCovariance(problem, linear).matrix;
   if (role == Role::kConsider) {
     Eigen::Vector4d by_radius(0, 0, 0, 1);
-    by_radius.head<3>() = Propagate(problem, fit.estimate, linear).lines.front().sensitivity;
+    by_radius.head<3>() = BudgetOf(problem, fit.estimate, linear).lines.front().sensitivity;
     result.covariance += by_radius * by_radius.transpose() * u * u;
   }
   return result;

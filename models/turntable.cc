@@ -1,8 +1,8 @@
 #include "models/turntable.h"
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <numbers>
-#include "models/turntable/measured_point.h"
 
 namespace scancal {
 
@@ -94,13 +94,52 @@ void Turntable::SetPlane(const Eigen::Vector3d& normal, double distance, Target*
   target->e2 = target->normal.cross(target->e1);
 }
 
-TurntablePose TurntablePose::Of(const std::vector<double>& values) {
-  return {values[Turntable::kM],     values[Turntable::kN],      values[Turntable::kTiltX],
-          values[Turntable::kTiltY], values[Turntable::kScaleY], values[Turntable::kScaleZ]};
+namespace turntable {
+
+System System::With(double M, double N) const {
+  System system = *this;
+  system[Turntable::kM] = M;
+  system[Turntable::kN] = N;
+  return system;
 }
 
-Eigen::Affine3d TurntablePose::TableFromSensor(double alpha) const {
-  return scancal::TableFromSensor(alpha, M, N, tilt_x, tilt_y) * Eigen::Scaling(1.0, 1 + scale_y, 1 + scale_z);
+double System::Bend(double y) const {
+  constexpr double kNoExtent_mm = 1e-9;
+  const double eta = (2 * y - depths[0] - depths[1]) / std::max(depths[1] - depths[0], kNoExtent_mm);
+  return eta * eta;
 }
 
+namespace {
+
+// With what a profile has besides: none of it.
+template <class T>
+std::array<T, Turntable::kForm> OfOneProfile(const std::array<double, System::kQuantities>& system) {
+  std::array<T, Turntable::kForm> q;
+  q.fill(T(0.0));
+  for (size_t k = 0; k < system.size(); ++k) q[k] = T(system[k]);
+  return q;
+}
+
+}  // namespace
+
+ProfileInTable<double> System::At(double alpha) const { return {alpha, OfOneProfile<double>(q).data()}; }
+
+Eigen::Vector3d System::Point(double alpha, double y, double z) const {
+  return Eigen::Vector3d::Map(At(alpha).Point(y, z, Bend(y)).data());
+}
+
+System::Derivatives System::Differentiate(double alpha, double y, double z) const {
+  using Jet = ceres::Jet<double, kQuantities>;
+  std::array<Jet, Turntable::kForm> seeds = OfOneProfile<Jet>(q);
+  for (int k = 0; k < static_cast<int>(kQuantities); ++k) seeds[k].v[k] = 1;
+  const std::array<Jet, 3> p = ProfileInTable<Jet>(alpha, seeds.data()).Point(y, z, Bend(y));
+  Derivatives result;
+  for (int i = 0; i < 3; ++i) {
+    result.point[i] = p[i].a;
+    result.by.row(i) = p[i].v.transpose();
+  }
+  return result;
+}
+
+}  // namespace turntable
 }  // namespace scancal

@@ -1,7 +1,8 @@
 // A laser line profiler that turns about an axis and sees planes (Zhao et al. 2021).
 #pragma once
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -12,26 +13,18 @@
 
 namespace scancal {
 
-// A point (0, y, z) of the profile at encoder angle alpha lies in the table frame at
-//
-//     P(alpha; y, z) = Rz(-alpha) Rz(pi) ( Ry(tilt_y) Rx(tilt_x) (0, y, z)' + (-M, N, 0)' ),
-//
-// which for zero tilts is eq. (7), simplified: x = M cos a - (N + y) sin a, y = -M sin a - (N + y) cos a, z = z. A
-// placement of the plate is the plane n . P = d. Two residuals, both affine in (y, z) within a profile, hence exact on
-// its pseudo-points:
+// A reading (alpha; y, z) lies in the table frame at P, see ProfileInTable. A placement of the plate is the plane
+// n . P = d. Two residuals, both affine in (y, z) within a profile, hence exact on its pseudo-points:
 //
 //     point to plane   r = n . P - d                     the published kind; biased, because the noise is not along n
 //     depth            e = r / (n . dP/dy)               measured depth minus the depth that the model predicts
 //
 // For a lidar the noise lies along the range: e = r / (n . dP/drange), with dP/drange taken at the profile's own line
-// (see Profile::along_range). Lengths mm, angles rad.
+// (see View::along_range). Lengths mm, angles rad.
 //
-// What may be wrong besides, each nominally zero: the encoder reads alpha + encoder_cos1 cos alpha + encoder_sin1 sin
-// alpha + encoder_cos2 cos 2 alpha + encoder_sin2 sin 2 alpha + encoder_jitter (one a profile); depth is
-// y (1 + scale_y) + shear z + linearity eta^2, eta from -1 to 1 over the depths of all scans; z (1 + scale_z); M and N
-// grow by expansion; the plate's form adds its modes (form_modes.h) to the distance; noise_y, noise_z move single
-// points, line_offset and line_slope all points of a profile along depth, as noise does that is correlated along the
-// line.
+// Besides the quantities of the system, which P knows: the plate's form adds its modes (form_modes.h) to the distance;
+// encoder_jitter turns a profile, line_offset and line_slope move all its points along depth, as noise does that is
+// correlated along the line; noise_y, noise_z move single points.
 class Turntable {
  public:
   enum Index {
@@ -48,7 +41,7 @@ class Turntable {
     kEncoderCos2,
     kEncoderSin2,
     kExpansion,
-    kNormal1,
+    kNormal1,  // the first that is not the system's
     kNormal2,
     kDistance,
     kEncoderJitter,
@@ -101,64 +94,117 @@ class Turntable {
   static std::pair<Eigen::Vector3d, double> Plane(const Target& plane, const Eigen::Vector3d& own);
   static void SetPlane(const Eigen::Vector3d& normal, double distance, Target* target);  // n, d and the tangents
 
-  // What the encoder reads beyond the true angle, rad.
-  template <class T>
-  static T EncoderError(double alpha, const Seen<T>& q);
-
  private:
   Residuals residuals_;
   Quantities quantities_;
 };
 
-// Where the profiler stands: what turns a measured point into the table frame.
-struct TurntablePose {
-  double M = 0, N = 0, tilt_x = 0, tilt_y = 0, scale_y = 0, scale_z = 0;
-  static TurntablePose Of(const std::vector<double>& values);  // one per quantity of Turntable
-  // P = table_from_sensor (0, y, z), one for all points of a profile; scales included.
-  Eigen::Affine3d TableFromSensor(double alpha) const;
-  Eigen::Vector3d Point(double alpha, double y, double z) const {
-    return TableFromSensor(alpha) * Eigen::Vector3d(0, y, z);
+namespace turntable {
+
+// The only map from readings and the quantities of the system to the table frame, for all points of one profile:
+//
+//     P(alpha; y, z) = Rz(-a) Rz(pi) ( Ry(tilt_y) Rx(tilt_x) (0, true y, true z)' + (1 + expansion) (-M, N, 0)' )
+//
+//     a      = alpha - encoder_cos1 cos alpha - encoder_sin1 sin alpha - encoder_cos2 cos 2 alpha
+//                    - encoder_sin2 sin 2 alpha - encoder_jitter
+//     true y = (1 + scale_y) y + shear z + linearity bend,    true z = (1 + scale_z) z
+//
+// bend is eta^2, eta from -1 to 1 over the depths of all scans: of a point System::Bend, of a pseudo-point what its
+// profile says (View::bend). With M and N alone this is eq. (7), simplified: x = M cos a - (N + y) sin a,
+// y = -M sin a - (N + y) cos a, z = z. P is affine in (y, z, bend); the columns are kept as they lie before the table
+// turns, because the normal of a plane is turned back once and then needs only products with them. mm, rad.
+template <class T>
+struct ProfileInTable {
+  using Vector = std::array<T, 3>;
+
+  // q: by Turntable::Index.
+  ProfileInTable(double alpha, const T* q);
+
+  Vector Turned(const Vector& v) const { return {-(c * v[0] + s * v[1]), s * v[0] - c * v[1], v[2]}; }
+  Vector TurnedBack(const Vector& v) const { return {-(c * v[0] - s * v[1]), -(s * v[0] + c * v[1]), v[2]}; }
+  Vector Point(double y, double z, double bend) const {
+    Vector p;
+    for (size_t i = 0; i < 3; ++i) p[i] = origin[i] + along_y[i] * y + along_z[i] * z + along_bend[i] * bend;
+    return Turned(p);
   }
+
+  T c, s;         // cosine and sine of a
+  Vector origin;  // the profiler's zero
+  Vector along_y, along_z, along_bend;
+};
+
+// A number for each quantity of the system: as declared, as found, as it is in a simulation.
+struct System {
+  static constexpr size_t kQuantities = Turntable::kNormal1;
+  std::array<double, kQuantities> q{};  // by Turntable::Index
+  std::array<double, 2> depths{};       // over which eta runs from -1 to 1, mm; of no consequence without linearity
+
+  double operator[](size_t k) const { return q[k]; }
+  double& operator[](size_t k) { return q[k]; }
+  double M() const { return q[Turntable::kM]; }
+  double N() const { return q[Turntable::kN]; }
+  System With(double M, double N) const;  // everything else as it is
+
+  double Bend(double y) const;                              // eta^2
+  ProfileInTable<double> At(double alpha) const;            // a profile without jitter
+  Eigen::Vector3d Point(double alpha, double y, double z) const;
+  struct Derivatives {
+    Eigen::Vector3d point;
+    Eigen::Matrix<double, 3, kQuantities> by;
+  };
+  Derivatives Differentiate(double alpha, double y, double z) const;
 };
 
 template <class T>
-void Turntable::Residual(const Target& plane, const View& profile, const Seen<T>& q, T* r) const {
+ProfileInTable<T>::ProfileInTable(double alpha, const T* q) {
   using std::cos, std::sin;
+  const T a = alpha - (q[Turntable::kEncoderJitter] + cos(alpha) * q[Turntable::kEncoderCos1] +
+                       sin(alpha) * q[Turntable::kEncoderSin1] + cos(2 * alpha) * q[Turntable::kEncoderCos2] +
+                       sin(2 * alpha) * q[Turntable::kEncoderSin2]);
+  c = cos(a);
+  s = sin(a);
+  const T growth = 1.0 + q[Turntable::kExpansion];
+  origin = {-q[Turntable::kM] * growth, q[Turntable::kN] * growth, T(0.0)};
+  const T cx = cos(q[Turntable::kTiltX]), sx = sin(q[Turntable::kTiltX]), cy = cos(q[Turntable::kTiltY]),
+          sy = sin(q[Turntable::kTiltY]);
+  const Vector depth = {sy * sx, cx, cy * sx}, height = {sy * cx, -sx, cy * cx};
+  for (size_t i = 0; i < 3; ++i) {
+    along_y[i] = depth[i] * (1.0 + q[Turntable::kScaleY]);
+    along_z[i] = height[i] * (1.0 + q[Turntable::kScaleZ]) + depth[i] * q[Turntable::kShear];
+    along_bend[i] = depth[i] * q[Turntable::kLinearity];
+  }
+}
+
+}  // namespace turntable
+
+template <class T>
+void Turntable::Residual(const Target& plane, const View& profile, const Seen<T>& q, T* r) const {
   const T turn[3] = {q[kNormal1] * plane.e1[0] + q[kNormal2] * plane.e2[0],
                      q[kNormal1] * plane.e1[1] + q[kNormal2] * plane.e2[1],
                      q[kNormal1] * plane.e1[2] + q[kNormal2] * plane.e2[2]};
-  T n[3];
-  Rotate(turn, plane.normal, n);
-  const T a = profile.alpha - EncoderError(profile.alpha, q);
-  const T c = cos(a), s = sin(a);
-  // m: n as seen by the untilted profiler, (Rz(-a) Rz(pi))' n; then each coordinate's share of n . P.
-  const T m[3] = {-(c * n[0] - s * n[1]), -(s * n[0] + c * n[1]), n[2]};
-  const T cx = cos(q[kTiltX]), sx = sin(q[kTiltX]), cy = cos(q[kTiltY]), sy = sin(q[kTiltY]);
-  const T by = m[0] * (sy * sx) + m[1] * cx + m[2] * (cy * sx);
-  const T bz = m[0] * (sy * cx) - m[1] * sx + m[2] * (cy * cx);
-  const T b0 = (m[1] * q[kN] - m[0] * q[kM]) * (1.0 + q[kExpansion]) - (plane.distance + q[kDistance]);
+  std::array<T, 3> normal;
+  Rotate(turn, plane.normal, normal.data());
+  const turntable::ProfileInTable<T> in_table(profile.alpha, q.q);
+  const std::array<T, 3> n = in_table.TurnedBack(normal);
+  const auto along = [&n](const std::array<T, 3>& v) { return n[0] * v[0] + n[1] * v[1] + n[2] * v[2]; };
+  // n . P - d = at_origin + by_y y + by_z z + by_bend bend
+  const T at_origin = along(in_table.origin) - (plane.distance + q[kDistance]);
+  const T by_y = along(in_table.along_y), by_z = along(in_table.along_z), by_bend = along(in_table.along_bend);
   // n . dP/dnoise of a row of weight one. With the scale, or the noise itself would prefer a small one.
-  const T along_noise = profile.along_range ? -b0 : by * (1.0 + q[kScaleY]);
+  const T along_noise = profile.along_range ? -at_origin : by_y;
   const T scale = residuals_ == Residuals::kDepth ? 1.0 / along_noise : T(1.0);
   const bool has_form = profile.form.size() && !std::all_of(q.q + kForm, q.q + kForm + kFormModes, IsZero<T>);
   for (int i = 0; i < Points(profile); ++i) {
     const PseudoPoint& p = profile.points[i];
-    const T y = p.y * (1.0 + q[kScaleY]) + p.z * q[kShear];
-    const T distance = b0 + by * y + bz * (p.z * (1.0 + q[kScaleZ]));
+    const T distance = at_origin + by_y * p.y + by_z * p.z;
     T noise = q(i, kNoiseY);
     if (profile.line.size()) noise += profile.line(i, 0) * q[kLineOffset] + profile.line(i, 1) * q[kLineSlope];
-    r[i] = p.weight * distance - along_noise * noise - bz * q(i, kNoiseZ);
-    if (profile.bend.size()) r[i] += (by * profile.bend[i]) * q[kLinearity];
+    r[i] = p.weight * distance - along_noise * noise - by_z * q(i, kNoiseZ);
+    if (profile.bend.size()) r[i] += by_bend * profile.bend[i];
     if (has_form)
       for (int k = 0; k < kFormModes; ++k) r[i] -= profile.form(i, k) * q[kForm + k];
     r[i] *= scale;
   }
-}
-
-template <class T>
-T Turntable::EncoderError(double alpha, const Seen<T>& q) {
-  return q[kEncoderJitter] + std::cos(alpha) * q[kEncoderCos1] + std::sin(alpha) * q[kEncoderSin1] +
-         std::cos(2 * alpha) * q[kEncoderCos2] + std::sin(2 * alpha) * q[kEncoderSin2];
 }
 
 }  // namespace scancal

@@ -13,19 +13,14 @@ class CalibratedTurntable {
   // An Error without M and N. Quantities that the calibration does not name, as in old files, are zero.
   static Result<CalibratedTurntable> From(const Calibration& calibration);
 
-  // A reading in the table frame. rad, mm.
-  Eigen::Vector3d Point(double alpha, double y, double z) const;
-  struct Derivatives {
-    Eigen::Vector3d point;
-    Eigen::MatrixXd by;  // 3 x quantities of the system, by Turntable::Index
-  };
-  Derivatives Differentiate(double alpha, double y, double z) const;
+  const turntable::System& system() const { return system_; }
   const ScannedVolume& volume() const { return volume_; }
 
  private:
-  CalibratedTurntable(std::vector<double> q, const ScannedVolume& volume) : q_(std::move(q)), volume_(volume) {}
+  CalibratedTurntable(const turntable::System& system, const ScannedVolume& volume)
+      : system_(system), volume_(volume) {}
 
-  std::vector<double> q_;  // every quantity, by Turntable::Index
+  turntable::System system_;
   ScannedVolume volume_;
 };
 
@@ -44,8 +39,8 @@ class PointUncertainty {
  private:
   PointUncertainty(CalibratedTurntable turntable, JointCovariance joint)
       : turntable_(std::move(turntable)), joint_(std::move(joint)) {}
-  // The point, and its derivatives by joint_.names.
-  CalibratedTurntable::Derivatives ByJoint(const std::vector<double>& reading) const;
+  // Derivatives of a point by joint_.names.
+  Eigen::MatrixXd ByJoint(const turntable::System::Derivatives& of) const;
 
   CalibratedTurntable turntable_;
   JointCovariance joint_;

@@ -8,6 +8,9 @@
 #include "solver/calibrate.h"
 
 namespace scancal {
+
+using turntable::System;
+
 namespace {
 
 constexpr double kSteps[] = {1, 0.1, 0.01};  // mm: the published one, and what finer ones bring
@@ -25,7 +28,9 @@ class Stopwatch {
 };
 
 constexpr size_t kParameters = 4;
-std::vector<double> Values(const TurntablePose& pose) { return {pose.M, pose.N, pose.tilt_x, pose.tilt_y}; }
+std::vector<double> Values(const System& system) {
+  return {system.q.begin(), system.q.begin() + kParameters};  // M, N, tilt_x, tilt_y
+}
 
 struct MethodResult {
   std::string method, note;
@@ -78,27 +83,27 @@ Comparison Tabulate(const std::vector<MethodResult>& results) {
   return table;
 }
 
-// Planes refitted at the pose: S as the search sees it, and the rms over all points.
+// Planes refitted to the points as the system sees them: S as the search sees it, and the rms over all points.
 struct Flatness {
   double S = 0, rms = 0;
 };
-Flatness FlatnessAt(const std::vector<Placement>& placements, const TurntablePose& pose, PlaneFit kind) {
+Flatness FlatnessOf(const std::vector<Placement>& placements, const System& system, PlaneFit kind) {
   double sum = 0, squares = 0, points = 0;
   for (const Placement& placement : placements) {
-    const PlaneStorey storey(Views(placement.profiles, Turntable::Residuals::kPlane), pose);
-    sum += storey.Rmse(pose.M, pose.N, kind);
-    squares += std::pow(storey.Rmse(pose.M, pose.N, PlaneFit::kOrthogonal), 2) * placement.Points();
+    const PlaneStorey storey(placement.profiles, system);
+    sum += storey.Rmse(system.M(), system.N(), kind);
+    squares += std::pow(storey.Rmse(system.M(), system.N(), PlaneFit::kOrthogonal), 2) * placement.Points();
     points += placement.Points();
   }
   return {sum / static_cast<double>(placements.size()), std::sqrt(squares / points)};
 }
 
-// Each placement seen with the pose that was found without it.
-std::optional<double> HeldOutRms(const std::vector<Placement>& placements, const std::vector<TurntablePose>& without) {
+// Each placement as it is seen by what was found without it.
+std::optional<double> HeldOutRms(const std::vector<Placement>& placements, const std::vector<System>& without) {
   if (without.empty()) return std::nullopt;
   double squares = 0, points = 0;
   for (size_t t = 0; t < placements.size(); ++t) {
-    squares += std::pow(FlatnessAt({placements[t]}, without[t], PlaneFit::kOrthogonal).rms, 2) * placements[t].Points();
+    squares += std::pow(FlatnessOf({placements[t]}, without[t], PlaneFit::kOrthogonal).rms, 2) * placements[t].Points();
     points += placements[t].Points();
   }
   return std::sqrt(squares / points);
@@ -129,26 +134,23 @@ MethodResult GridRow(const TurntableScanner& scanner, const TurntableStart& star
       },
       kThreads, [&](double fraction) { progress.Show(fraction); });
   row.seconds = watch.Seconds();
-  TurntablePose pose = scanner.Nominal();
-  pose.M = grid.best.at[0];
-  pose.N = grid.best.at[1];
-  row.values = Values(pose);
+  const System declared = scanner.Declared();
+  const auto with = [&](const GridNode& node) { return declared.With(node.at[0], node.at[1]); };
+  const System best = with(grid.best);
+  row.values = Values(best);
   row.S = grid.best.value;
-  row.rms = FlatnessAt(scanner.placements(), pose, kind).rms;
+  row.rms = FlatnessOf(scanner.placements(), best, kind).rms;
   if (grid.best.on_edge) row.note = "minimum on the edge";
-  std::vector<TurntablePose> without(grid.without.size(), pose);
-  for (size_t t = 0; t < without.size(); ++t) {
-    without[t].M = grid.without[t].at[0];
-    without[t].N = grid.without[t].at[1];
-  }
+  std::vector<System> without;
+  for (const GridNode& node : grid.without) without.push_back(with(node));
   row.held_out_rms = HeldOutRms(scanner.placements(), without);
   return row;
 }
 
-TurntablePose Left(const TurntableScanner& scanner, const TurntableStart& start, Turntable::Residuals residuals,
+System FoundWithout(const TurntableScanner& scanner, const TurntableStart& start, Turntable::Residuals residuals,
                    bool weighted, const std::vector<int>& estimate, size_t out) {
-  const TurntableFit fit = scanner.Fit(start.pose, residuals, estimate, out);
-  return weighted ? scanner.FitWeighted(fit).Pose() : fit.Pose();
+  const TurntableFit fit = scanner.Fit(start.system, residuals, estimate, out);
+  return weighted ? scanner.FitWeighted(fit).Found() : fit.Found();
 }
 
 bool HoldsOut(const std::vector<Placement>& placements, const CompareChoice& choice) {
@@ -162,15 +164,15 @@ MethodResult JointRow(const TurntableScanner& scanner, const TurntableStart& sta
                       Turntable::Residuals residuals, bool weighted, const std::vector<int>& estimate,
                       const CompareChoice& choice) {
   const Stopwatch watch;
-  TurntableFit fit = scanner.Fit(start.pose, residuals, estimate);
+  TurntableFit fit = scanner.Fit(start.system, residuals, estimate);
   const bool determined = fit.solution.observability.undetermined.empty();
   if (weighted && determined) fit = scanner.FitWeighted(fit);
   MethodResult row;
   row.method = name;
   row.seconds = watch.Seconds();
   row.effort = fit.solution.fit.iterations;
-  const TurntablePose pose = fit.Pose();
-  row.values = Values(pose);
+  const System found = fit.Found();
+  row.values = Values(found);
   if (!determined) {
     row.note = "not determined: " + fit.solution.observability.undetermined.front();
   } else {
@@ -183,12 +185,12 @@ MethodResult JointRow(const TurntableScanner& scanner, const TurntableStart& sta
     }
     if (!fit.solution.fit.converged) row.note = "no convergence";
   }
-  const Flatness flatness = FlatnessAt(scanner.placements(), pose, PlaneFit::kOrthogonal);
+  const Flatness flatness = FlatnessOf(scanner.placements(), found, PlaneFit::kOrthogonal);
   row.S = flatness.S;
   row.rms = flatness.rms;
-  std::vector<TurntablePose> without;
+  std::vector<System> without;
   for (size_t t = 0; HoldsOut(scanner.placements(), choice) && t < scanner.placements().size(); ++t)
-    without.push_back(Left(scanner, start, residuals, weighted && determined, estimate, t));
+    without.push_back(FoundWithout(scanner, start, residuals, weighted && determined, estimate, t));
   row.held_out_rms = HeldOutRms(scanner.placements(), without);
   return row;
 }
@@ -196,7 +198,7 @@ MethodResult JointRow(const TurntableScanner& scanner, const TurntableStart& sta
 }  // namespace
 
 Result<Comparison> TurntableScanner::Compare(const CompareChoice& choice) const {
-  SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
+  SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Start());
   std::vector<MethodResult> results;
   for (const PlaneFit kind : {PlaneFit::kVertical, PlaneFit::kOrthogonal})
     for (const double step : kSteps) results.push_back(GridRow(*this, start, step, kind, choice));

@@ -60,20 +60,21 @@ double SetAsideOffLine(std::vector<RawProfile>* profiles) {
 }
 
 // Removes the points off the plane of most profiles, by the distances' own robust scale.
-double SetAsideOffPlane(const TurntablePose& pose, std::vector<RawProfile>* profiles) {
+double SetAsideOffPlane(const turntable::System& system, std::vector<RawProfile>* profiles) {
   std::vector<Profile> compressed;
   for (const RawProfile& profile : *profiles)
     compressed.push_back(CompressProfile(profile.alpha, profile.y, profile.z, {}));
-  const RobustPlane plane = FitRobustPlane(Views(compressed, Turntable::Residuals::kPlane), pose);
+  const RobustPlane plane = FitRobustPlane(compressed, system);
   std::vector<std::vector<double>> distances;
   std::vector<double> on;
   for (size_t k = 0; k < profiles->size(); ++k) {
     const RawProfile& profile = (*profiles)[k];
     std::vector<double>& of_profile = distances.emplace_back();
-    const Eigen::Affine3d table_from_sensor = pose.TableFromSensor(profile.alpha);
-    for (size_t i = 0; i < profile.y.size(); ++i)
-      of_profile.push_back(
-          std::abs(plane.Distance(table_from_sensor * Eigen::Vector3d(0, profile.y[i], profile.z[i]))));
+    const turntable::ProfileInTable<double> in_table = system.At(profile.alpha);
+    for (size_t i = 0; i < profile.y.size(); ++i) {
+      const auto p = in_table.Point(profile.y[i], profile.z[i], system.Bend(profile.y[i]));
+      of_profile.push_back(std::abs(plane.Distance(Eigen::Vector3d::Map(p.data()))));
+    }
     if (!plane.off[k]) on.insert(on.end(), of_profile.begin(), of_profile.end());
   }
   const double within = std::max(kOffLine * kMadToSigma * Median(on), kRounding * Extent(profiles->front()));
@@ -137,14 +138,14 @@ Result<RawScan> ReadCleanScan(const ScanDeclaration& scan, double sense) {
   return raw;
 }
 
-Placement CompressPlacement(const RawScan& scan, const TurntablePose& pose) {
+Placement CompressPlacement(const RawScan& scan, const turntable::System& system) {
   Placement placement;
   placement.name = scan.name;
   placement.missing = scan.missing;
   placement.warning = scan.warning;
   if (scan.off_line > 0) placement.set_aside[kReasonOffLine] = scan.off_line;
   std::vector<RawProfile> profiles = scan.profiles;
-  if (const double off = SetAsideOffPlane(pose, &profiles); off > 0) placement.set_aside[kReasonOffPlane] = off;
+  if (const double off = SetAsideOffPlane(system, &profiles); off > 0) placement.set_aside[kReasonOffPlane] = off;
   for (const RawProfile& profile : profiles) {
     for (const auto* column : {&profile.y, &profile.z})
       for (const double value : *column) placement.largest = std::max(placement.largest, std::abs(value));

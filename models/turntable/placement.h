@@ -36,8 +36,8 @@ void Clean(RawScan* scan);
 // Reads, keeps, groups into profiles, and cleans. Shows progress.
 Result<RawScan> ReadCleanScan(const ScanDeclaration& scan, double sense);
 
-// Sets aside what is off the plane of most profiles, as it appears at `pose`, and compresses the rest.
-Placement CompressPlacement(const RawScan& scan, const TurntablePose& pose);
+// Sets aside what is off the plane of most profiles, as `system` sees it, and compresses the rest.
+Placement CompressPlacement(const RawScan& scan, const turntable::System& system);
 
 // The residuals from each profile's own line, for the result.
 ViewResiduals ResidualsOf(const Placement& placement);

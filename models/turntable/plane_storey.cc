@@ -3,6 +3,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 #include "models/parts/triangle.h"
+#include "models/turntable/smooth_columns.h"
 #include "solver/triangular_factor.h"
 
 namespace scancal {
@@ -27,20 +28,20 @@ double SmallestSingularValue(const Eigen::Matrix3d& r) {
 
 }  // namespace
 
-PlaneStorey::PlaneStorey(std::span<const Turntable::View> profiles, const TurntablePose& tilts) {
+PlaneStorey::PlaneStorey(const std::vector<Profile>& profiles, turntable::System system) {
   TriangularFactor factor(6);
-  TurntablePose at_axis = tilts;
-  at_axis.M = at_axis.N = 0;
   Eigen::Matrix<double, Eigen::Dynamic, 6> rows;
-  for (const Turntable::View& profile : profiles) {
+  for (const Turntable::View& profile : PlaneViews(profiles, system)) {
     rows.resize(std::ssize(profile.points), 6);
-    const double c = std::cos(profile.alpha), s = std::sin(profile.alpha);
-    const Eigen::Affine3d table_from_sensor = at_axis.TableFromSensor(profile.alpha);
+    system[Turntable::kM] = system[Turntable::kN] = 0;
+    const turntable::ProfileInTable<double> at_axis = system.At(profile.alpha);
+    system[Turntable::kM] = 1;
+    const turntable::ProfileInTable<double> at_one = system.At(profile.alpha);
+    const std::array<double, 3> p_M = at_one.Turned(at_one.origin);  // p_N is p_M a quarter turn on
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-      const PseudoPoint& p = profile.points[i];
-      const Eigen::Vector3d p0 = table_from_sensor * Eigen::Vector3d(0, p.y, p.z);
-      rows.row(i) << 1, c, s, p0.x(), p0.y(), p0.z();
-      rows.row(i) *= p.weight;
+      const std::array<double, 3> p0 = PointOf(at_axis, profile, i);
+      rows.row(i) << 1, p_M[0], -p_M[1], p0[0], p0[1], p0[2];
+      rows.row(i) *= profile.points[i].weight;
     }
     factor.Add(rows);
   }

@@ -1,8 +1,8 @@
 // One placement compressed to what a search over M and N needs.
 #pragma once
 #include <Eigen/Core>
-#include <span>
-#include "models/turntable.h"
+#include <vector>
+#include "models/turntable/profile.h"
 
 namespace scancal {
 
@@ -11,12 +11,12 @@ enum class PlaneFit {
   kOrthogonal,  // total least squares: right for every orientation
 };
 
-// With the tilts known, the points P = M p_M + N p_N + p_0 are linear in M and N, and the 21 numbers of the triangle of
-// (1, p_M, p_N, p_0) give every sum of squares: a node of the grid costs the same for a thousand points and for ten
-// million.
+// With all other quantities known, the points P = M p_M + N p_N + p_0 are linear in M and N, and the 21 numbers of the
+// triangle of (1, p_M, p_N, p_0) give every sum of squares: a node of the grid costs the same for a thousand points and
+// for ten million.
 class PlaneStorey {
  public:
-  PlaneStorey(std::span<const Turntable::View> profiles, const TurntablePose& tilts);
+  PlaneStorey(const std::vector<Profile>& profiles, turntable::System system);  // all of it but M and N
   double Rmse(double M, double N, PlaneFit fit) const;  // eq. (14), mm
   // Total least squares plane at (M, N): unit normal with distance >= 0.
   std::pair<Eigen::Vector3d, double> FitPlane(double M, double N) const;
@@ -25,8 +25,8 @@ class PlaneStorey {
   using Vector5 = Eigen::Matrix<double, 5, 1>;
   Eigen::Matrix3d Centred(double M, double N) const;  // upper triangular factor of (x, y, z) about their means
   double root_n_ = 0;
-  Eigen::Matrix<double, 1, 5> mean_;  // of cos, sin, x0, y0, z; times root_n_
-  Vector5 cos_, sin_, x0_, y0_, z_;   // about the means
+  Eigen::Matrix<double, 1, 5> mean_;  // of p_M (its x, -y), p_0 (x, y, z); times root_n_
+  Vector5 cos_, sin_, x0_, y0_, z_;   // the same about the means
 };
 
 }  // namespace scancal

@@ -57,10 +57,10 @@ std::vector<std::vector<Piece>> PiecesOf(const FittedPlacement& fitted) {
   const std::vector<Profile>& profiles = fitted.placement.profiles;
   const std::vector<Profile> segments = SegmentsOf(profiles);
   std::vector<Turntable::View> views = CentresOf(segments);
-  if (q[Turntable::kLinearity] != 0) AddBend(fitted.volume, segments, &views);
+  if (q[Turntable::kLinearity] != 0) AddBend(fitted.system, segments, &views);
   if (std::any_of(q.q + Turntable::kForm, q.q + Turntable::kForm + kFormModes, [](double form) { return form != 0; })) {
     const auto [normal, distance] = Turntable::Plane(fitted.target, Eigen::Vector3d::Map(q.q + Turntable::kNormal1));
-    AddForm(segments, TurntablePose::Of(fitted.values), normal, distance, &views);
+    AddForm(segments, fitted.system, normal, distance, &views);
   }
   const Turntable model(Turntable::Residuals::kDepth);
   std::vector<std::vector<Piece>> pieces;

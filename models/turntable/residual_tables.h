@@ -11,7 +11,7 @@ struct FittedPlacement {
   const Placement& placement;
   const Turntable::Target& target;
   const std::vector<double>& values;
-  const ScannedVolume& volume;  // of all placements
+  const turntable::System& system;  // what it found of the system
 };
 
 // Mean depth residuals (measured minus predicted; of a lidar along the range), mm, whatever residual was made small:

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include "models/median.h"
+#include "models/turntable/smooth_columns.h"
 
 namespace scancal {
 namespace {
@@ -62,16 +63,18 @@ RobustPlane LeastMedian(const std::vector<Points>& ordered) {
 
 }  // namespace
 
-RobustPlane FitRobustPlane(std::span<const Turntable::View> profiles, const TurntablePose& pose) {
+RobustPlane FitRobustPlane(const std::vector<Profile>& profiles, const turntable::System& system) {
   std::vector<size_t> order(profiles.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](size_t a, size_t b) { return profiles[a].alpha < profiles[b].alpha; });
   std::vector<Points> points;
+  const std::vector<Turntable::View> views = PlaneViews(profiles, system);
   for (const size_t k : order) {
+    const turntable::ProfileInTable<double> in_table = system.At(profiles[k].alpha);
     Points& profile = points.emplace_back();
-    for (size_t i = 0; i < 3; ++i)
-      profile[i] = pose.Point(profiles[k].alpha, profiles[k].points[i].y, profiles[k].points[i].z);
+    for (Eigen::Index i = 0; i < 3; ++i)
+      profile[static_cast<size_t>(i)] = Eigen::Vector3d::Map(PointOf(in_table, views[k], i).data());
   }
   std::vector<size_t> on(points.size());
   std::iota(on.begin(), on.end(), 0);

@@ -1,10 +1,8 @@
 // The plane on which most profiles of a placement lie, whatever the others see.
 #pragma once
 #include <Eigen/Core>
-#include <array>
-#include <span>
 #include <vector>
-#include "models/turntable.h"
+#include "models/turntable/profile.h"
 
 namespace scancal {
 
@@ -18,8 +16,8 @@ struct RobustPlane {
 };
 
 // Least median of squares over pairs of profiles, then total least squares on those that are not off. Up to 40 % of the
-// profiles may see something else. pose: M, N near the truth; an error there bends the plane and widens the median.
+// profiles may see something else. system: near the truth; an error there bends the plane and widens the median.
 // Fewer than six profiles are never off.
-RobustPlane FitRobustPlane(std::span<const Turntable::View> profiles, const TurntablePose& pose);
+RobustPlane FitRobustPlane(const std::vector<Profile>& profiles, const turntable::System& system);
 
 }  // namespace scancal

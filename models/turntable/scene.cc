@@ -31,7 +31,7 @@ void AddScene(const std::vector<Placement>& placements, Calibration* calibration
     const double distance = target.geometry["distance"][0];
     NumberTable outline = PointTable(), views = SightTable();
     const auto add_corner = [&](const Profile& profile, const PseudoPoint& end) {
-      const Eigen::Vector3d p = turntable->Point(profile.alpha, end.y, end.z);
+      const Eigen::Vector3d p = turntable->system().Point(profile.alpha, end.y, end.z);
       AddPoint(p - (normal.dot(p) - distance) * normal, &outline);
     };
     const std::vector<const Profile*> some = SomeOf(placements[t].profiles);
@@ -42,8 +42,8 @@ void AddScene(const std::vector<Placement>& placements, Calibration* calibration
     if (!outline.rows.empty()) outline.rows.push_back(outline.rows.front());
     for (const Profile* profile : some) {
       const ProfileFactor& f = profile->factor;
-      AddSight(turntable->Point(profile->alpha, 0, 0),
-               turntable->Point(profile->alpha, f(0, 2) / f(0, 0), f(0, 1) / f(0, 0)), &views);
+      AddSight(turntable->system().Point(profile->alpha, 0, 0),
+               turntable->system().Point(profile->alpha, f(0, 2) / f(0, 0), f(0, 1) / f(0, 0)), &views);
     }
     target.scene = {{"outline", outline}, {"views", views}};
   }

@@ -4,14 +4,20 @@
 #include <cmath>
 #include <limits>
 #include "io/units.h"
+#include "models/turntable/volume.h"
 #include "solver/random.h"
 
 namespace scancal {
+
+using turntable::System;
+
 namespace {
 
 constexpr double kStandoff = 75;                         // mm from the profiler's zero to the plate, straight ahead
 constexpr double kSpike = 30;                            // mm
 constexpr double kNearestWall = 30, kFarthestWall = 60;  // mm behind the plate
+constexpr int kSteps = 10, kRounds = 4;
+constexpr double kSettled_mm = 1e-9;
 constexpr double kLeastHalf = 1;                         // mm: of what is seen of a plate by a single profile or point
 // Placements have the streams 1, 2, ...
 constexpr uint64_t kFormStreams = uint64_t{1} << 32, kBackgroundStreams = uint64_t{2} << 32;
@@ -34,21 +40,29 @@ Plate PlacePlate(const TurntableScene& scene, int placement) {
   const double lean = kLean[placement % 6] * kDegree, turn = turned * kDegree;
   Plate plate;
   plate.normal = {std::sin(turn) * std::cos(lean), -std::cos(turn) * std::cos(lean), std::sin(lean)};
-  plate.centre = scene.pose.Point(0, kStandoff, 0);
+  System straight = scene.system;
+  straight[Turntable::kLinearity] = 0;
+  plate.centre = straight.Point(0, kStandoff, 0);
   plate.across = plate.normal.cross(Eigen::Vector3d::UnitZ()).normalized();
   plate.up = plate.across.cross(plate.normal);
   return plate;
 }
 
-// Depth at which the profiler, turned by alpha, sees height z of the plate with its form. Affine in y but for the form,
-// whose slope is small, so two steps settle it.
-double TrueDepth(const TurntablePose& pose, const Plate& plate, double alpha, double z) {
-  const Eigen::Vector3d at_zero = pose.Point(alpha, 0, z), along = pose.Point(alpha, 1, z) - at_zero;
+// The depth that the profiler shows where its encoder reads alpha and it sees z of the plate with its form. Affine in y
+// but for form and linearity, whose slopes are small: a few steps settle it.
+double ShownDepth(const System& system, const Plate& plate, double alpha, double z) {
+  const turntable::ProfileInTable<double> in_table = system.At(alpha);
+  const auto at = [&](double y, double bend) -> Eigen::Vector3d {
+    return Eigen::Vector3d::Map(in_table.Point(y, z, bend).data());
+  };
+  const double by_y = plate.normal.dot(at(1, 0) - at(0, 0));
   double y = 0;
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d p = at_zero + y * along - plate.centre;
+  for (int k = 0; k < kSteps; ++k) {
+    const Eigen::Vector3d p = at(y, k == 0 ? 0 : system.Bend(y)) - plate.centre;
     const double height = k == 0 ? 0 : plate.form.At(plate.across.dot(p), plate.up.dot(p));
-    y += (height - plate.normal.dot(p)) / plate.normal.dot(along);
+    const double step = (height - plate.normal.dot(p)) / by_y;
+    y += step;
+    if (k > 0 && std::abs(step) < kSettled_mm) break;
   }
   return y;
 }
@@ -59,12 +73,12 @@ double Spread(double extent, int index, int count) {
 }
 
 // What the scan sees of the plate, were it flat.
-PlateRectangle Seen(const TurntableScene& scene, const Plate& flat) {
+PlateRectangle ScannedRectangle(const TurntableScene& scene, const System& system, const Plate& flat) {
   Eigen::AlignedBox2d box;
   for (int i = 0; i < scene.profiles; ++i) {
     for (int j = 0; j < scene.points; ++j) {
       const double alpha = Spread(scene.sweep, i, scene.profiles), z = Spread(scene.line_length, j, scene.points);
-      const Eigen::Vector3d p = scene.pose.Point(alpha, TrueDepth(scene.pose, flat, alpha, z), z) - flat.centre;
+      const Eigen::Vector3d p = system.Point(alpha, ShownDepth(system, flat, alpha, z), z) - flat.centre;
       box.extend(Eigen::Vector2d(flat.across.dot(p), flat.up.dot(p)));
     }
   }
@@ -72,10 +86,10 @@ PlateRectangle Seen(const TurntableScene& scene, const Plate& flat) {
   return {box.center().x(), box.center().y(), half.x(), half.y()};
 }
 
-PlateForm FormOf(const TurntableScene& scene, int placement, const Plate& flat) {
+PlateForm FormOf(const TurntableScene& scene, const System& system, int placement, const Plate& flat) {
   if (scene.form == 0) return {};
   const uint64_t stream = kFormStreams + (scene.one_plate ? 0 : static_cast<uint64_t>(placement));
-  return {scene.form_kind, scene.form, Seen(scene, flat), Random(scene.seed, stream)};
+  return {scene.form_kind, scene.form, ScannedRectangle(scene, system, flat), Random(scene.seed, stream)};
 }
 
 // A wall behind the plate, seen at one end of each line.
@@ -101,18 +115,41 @@ class Background {
 
 }  // namespace
 
-GridBox SearchAround(const TurntablePose& pose, double width_M, double width_N) {
-  const double lower_M = std::round(pose.M - 0.65 * width_M), lower_N = std::round(pose.N - 14.0 / 30 * width_N);
+System WithDepths(const TurntableScene& scene) {
+  System system = scene.system;
+  if (system[Turntable::kLinearity] == 0) return system;
+  for (int round = 0; round < kRounds; ++round) {  // the depths that are shown depend on linearity a little
+    std::vector<Placement> placements(static_cast<size_t>(scene.placements));
+    for (int k = 0; k < scene.placements; ++k) {
+      const Plate flat = PlacePlate(scene, k);
+      for (int i = 0; i < scene.profiles; ++i) {
+        const double alpha = Spread(scene.sweep, i, scene.profiles);
+        std::vector<double> y, z;
+        for (int j = 0; j < scene.points; ++j) {
+          z.push_back(Spread(scene.line_length, j, scene.points));
+          y.push_back(ShownDepth(round == 0 ? scene.system : system, flat, alpha, z.back()));
+        }
+        placements[static_cast<size_t>(k)].profiles.push_back(CompressProfile(alpha, y, z, {}));
+      }
+    }
+    system.depths = VolumeOf(placements).y;
+  }
+  return system;
+}
+
+GridBox SearchAround(const System& system, double width_M, double width_N) {
+  const double lower_M = std::round(system.M() - 0.65 * width_M), lower_N = std::round(system.N() - 14.0 / 30 * width_N);
   return {{lower_M, lower_N}, {lower_M + width_M, lower_N + width_N}, 1};
 }
 
 std::vector<SimulatedPlacement> SimulateTurntable(const TurntableScene& scene) {
   std::vector<SimulatedPlacement> placements;
+  const System system = WithDepths(scene);
   const double correlation = (scene.line_correlation - 1) / (scene.line_correlation + 1);  // of neighbours, AR(1)
   for (int k = 0; k < scene.placements; ++k) {
     Random random(scene.seed, static_cast<uint64_t>(k) + 1);
     Plate plate = PlacePlate(scene, k);
-    plate.form = FormOf(scene, k, plate);
+    plate.form = FormOf(scene, system, k, plate);
     Background background(scene, k);
     SimulatedPlacement& placement = placements.emplace_back();
     placement.name = NameOf(k, scene.placements);
@@ -127,7 +164,7 @@ std::vector<SimulatedPlacement> SimulateTurntable(const TurntableScene& scene) {
       for (int j = 0; j < scene.points; ++j) {
         const double z = Spread(scene.line_length, j, scene.points);
         if (j > 0) noise = correlation * noise + std::sqrt(1 - correlation * correlation) * random.Normal();
-        double y = TrueDepth(scene.pose, plate, alpha, z) + background.Behind(j) + scene.noise_y * noise;
+        double y = ShownDepth(system, plate, alpha, z) + background.Behind(j) + scene.noise_y * noise;
         // The same number of draws for every point, so that one kind of error does not shift the others.
         const double spike = random.Uniform(), how_far = random.Uniform(), lost = random.Uniform();
         if (spike < scene.outliers) y += kSpike * (2 * how_far - 1);

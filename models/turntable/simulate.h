@@ -14,7 +14,7 @@
 namespace scancal {
 
 struct TurntableScene {
-  TurntablePose pose{123, 409, 0, 0, 0, 0};
+  turntable::System system{{123, 409}, {}};  // its depths follow from the scene: WithDepths
   int placements = 3;
   int profiles = 200, points = 200;  // per placement, per profile
   double sweep = 30 * kDegree;       // rad, from -sweep/2 to sweep/2
@@ -33,9 +33,12 @@ struct TurntableScene {
   uint64_t seed = 1;
 };
 
-// A search interval of these widths (mm) around the pose, at whole millimetres and not centred: as an installer would
+// The scene's system with the depths of its scans, as whoever reads them will see them: what its linearity refers to.
+turntable::System WithDepths(const TurntableScene& scene);
+
+// A search interval of these widths (mm) around M and N, at whole millimetres and not centred: as an installer would
 // guess it. The published M 123, N 409 with widths 20 and 30 give the published [110, 130] x [395, 425].
-GridBox SearchAround(const TurntablePose& pose, double width_M, double width_N);
+GridBox SearchAround(const turntable::System& system, double width_M, double width_N);
 
 struct SimulatedProfile {
   double alpha = 0;          // as recorded: with jitter

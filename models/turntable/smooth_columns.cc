@@ -1,8 +1,8 @@
 #include "models/turntable/smooth_columns.h"
+#include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <cmath>
 #include <limits>
-#include "models/turntable/volume.h"
 
 namespace scancal {
 namespace {
@@ -64,15 +64,18 @@ Eigen::MatrixXd AsLine(const Profile& profile, const Turntable::View& view, Eige
 
 }  // namespace
 
-void AddForm(const std::vector<Profile>& profiles, const TurntablePose& pose, const Eigen::Vector3d& normal,
+void AddForm(const std::vector<Profile>& profiles, const turntable::System& system, const Eigen::Vector3d& normal,
              double distance, std::vector<Turntable::View>* views) {
   const PlateFrame frame(normal);
-  std::vector<Eigen::Affine3d> table_from_sensor;
-  for (const Profile& profile : profiles) table_from_sensor.push_back(pose.TableFromSensor(profile.alpha));
+  std::vector<turntable::ProfileInTable<double>> in_table;
+  for (const Profile& profile : profiles) in_table.push_back(system.At(profile.alpha));
   // Where the line of sight meets the plane: at the measured point itself, its noise would be a form.
   const auto on_plate = [&](size_t k, const PseudoPoint& p) -> Eigen::Array2d {
-    const Eigen::Vector3d measured = table_from_sensor[k] * Eigen::Vector3d(0, p.y, p.z);
-    const Eigen::Vector3d sight = measured - table_from_sensor[k] * Eigen::Vector3d(0, 0, profiles[k].ranged ? 0 : p.z);
+    const auto at = [&](double y, double z) {
+      return Eigen::Vector3d(Eigen::Vector3d::Map(in_table[k].Point(y, z, system.Bend(y)).data()));
+    };
+    const Eigen::Vector3d measured = at(p.y, p.z);
+    const Eigen::Vector3d sight = measured - at(0, profiles[k].ranged ? 0 : p.z);
     return frame.At(measured - (normal.dot(measured) - distance) / normal.dot(sight) * sight).array();
   };
   Bounds plate;
@@ -88,14 +91,26 @@ void AddForm(const std::vector<Profile>& profiles, const TurntablePose& pose, co
   }
 }
 
-void AddBend(const ScannedVolume& volume, const std::vector<Profile>& profiles, std::vector<Turntable::View>* views) {
+void AddBend(const turntable::System& system, const std::vector<Profile>& profiles,
+             std::vector<Turntable::View>* views) {
   for (size_t k = 0; k < profiles.size(); ++k) {
     Turntable::View& view = (*views)[k];
     view.bend = AsLine(profiles[k], view, 1, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
-      const double eta = volume.Eta(p.y);
-      return Eigen::RowVectorXd::Constant(1, eta * eta);
+      return Eigen::RowVectorXd::Constant(1, system.Bend(p.y));
     });
   }
+}
+
+std::vector<Turntable::View> PlaneViews(const std::vector<Profile>& profiles, const turntable::System& system) {
+  std::vector<Turntable::View> views = Views(profiles, Turntable::Residuals::kPlane);
+  if (system[Turntable::kLinearity] != 0) AddBend(system, profiles, &views);
+  return views;
+}
+
+std::array<double, 3> PointOf(const turntable::ProfileInTable<double>& in_table, const Turntable::View& profile,
+                              Eigen::Index point) {
+  const PseudoPoint& p = profile.points[point];
+  return in_table.Point(p.y, p.z, profile.bend.size() ? profile.bend[point] / p.weight : 0);
 }
 
 }  // namespace scancal

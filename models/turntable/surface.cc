@@ -61,16 +61,17 @@ double SAt(const std::vector<PlaneStorey>& storeys, double M, double N, PlaneFit
   return sum / static_cast<double>(storeys.size());
 }
 
-void AddSurface(const GridBox& box, const std::vector<PlaneStorey>& storeys, Calibration* calibration) {
-  calibration->surface["search"] = Table(storeys, Thinned(box, 0), Thinned(box, 1));
+void AddSurface(const GridBox& box, const std::vector<PlaneStorey>& declared, const std::vector<PlaneStorey>& found,
+                Calibration* calibration) {
+  calibration->surface["search"] = Table(declared, Thinned(box, 0), Thinned(box, 1));
   const double half_width = HalfWidth(box, *calibration);
   if (std::isfinite(half_width))
     calibration->surface["near"] =
-        Table(storeys, Around(*calibration->Find("M"), half_width), Around(*calibration->Find("N"), half_width));
+        Table(found, Around(*calibration->Find("M"), half_width), Around(*calibration->Find("N"), half_width));
 }
 
 Result<void> TurntableScanner::WriteSurface(const std::filesystem::path& file) const {
-  SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
+  SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Start());
   SCANCAL_ASSIGN_OR_RETURN(OutputFile output, OutputFile::Create(file));
   SCANCAL_RETURN_IF_ERROR(output.Write("M_mm,N_mm,S_published_mm,S_orthogonal_mm\n"));
   const GridBox box = Box();

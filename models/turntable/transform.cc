@@ -27,7 +27,7 @@ Result<int64_t> TransformTurntable(const Dataset& dataset, const Calibration& ca
       const SensorColumns sensor = ToSensor(declaration.sense, batch);
       transformed.clear();
       for (size_t i = 0; i < batch.size(); ++i) {
-        const Eigen::Vector3d p = turntable.Point(sensor.alpha[i], sensor.y[i], sensor.z[i]);
+        const Eigen::Vector3d p = turntable.system().Point(sensor.alpha[i], sensor.y[i], sensor.z[i]);
         transformed.push_back({p.x(), p.y(), p.z()});
       }
       SCANCAL_RETURN_IF_ERROR(cloud->Write(transformed, number));

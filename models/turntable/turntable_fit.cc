@@ -6,6 +6,9 @@
 #include "models/turntable/turntable_scanner.h"
 
 namespace scancal {
+
+using turntable::System;
+
 namespace {
 
 // Line correlation declared as a length: what it adds to the offset and the slope of a profile of the usual size.
@@ -30,22 +33,23 @@ void DeclareLineCorrelation(const TurntableDeclaration& declaration, const std::
 
 }  // namespace
 
-std::vector<PlaneStorey> StoreysOf(const std::vector<Placement>& placements, const TurntablePose& tilts) {
+std::vector<PlaneStorey> StoreysOf(const std::vector<Placement>& placements, const System& system) {
   std::vector<PlaneStorey> storeys;
-  for (const Placement& placement : placements)
-    storeys.emplace_back(Views(placement.profiles, Turntable::Residuals::kPlane), tilts);
+  for (const Placement& placement : placements) storeys.emplace_back(placement.profiles, system);
   return storeys;
 }
 
-TurntableFit TurntableScanner::Fit(const TurntablePose& pose, Turntable::Residuals residuals,
+TurntableFit TurntableScanner::Fit(const System& system, Turntable::Residuals residuals,
                                    const std::vector<int>& estimate, std::optional<size_t> without,
                                    int max_iterations) const {
   TurntableFit fit;
   std::vector<Placement> placements = placements_;
   if (without) placements.erase(placements.begin() + static_cast<std::ptrdiff_t>(*without));
-  const std::vector<PlaneStorey> storeys = StoreysOf(placements, pose);
+  fit.depths = system.depths;
+  const std::vector<PlaneStorey> storeys = StoreysOf(placements, system);
   double rms = kLeastSigma_mm;
-  for (const PlaneStorey& storey : storeys) rms = std::max(rms, storey.Rmse(pose.M, pose.N, PlaneFit::kOrthogonal));
+  for (const PlaneStorey& storey : storeys)
+    rms = std::max(rms, storey.Rmse(system.M(), system.N(), PlaneFit::kOrthogonal));
   const double pure = PureOf(placements).sigma();
   fit.sigma = residuals == Turntable::Residuals::kDepth && pure > kLeastSigma_mm ? pure : rms;
   const auto model = std::make_shared<Turntable>(residuals);
@@ -56,23 +60,20 @@ TurntableFit TurntableScanner::Fit(const TurntablePose& pose, Turntable::Residua
     Turntable::Target& target = fit.targets.emplace_back();
     target.name = placements[t].name;
     target.views = Views(placements[t].profiles, residuals);
-    const auto [normal, distance] = storeys[t].FitPlane(pose.M, pose.N);
+    const auto [normal, distance] = storeys[t].FitPlane(system.M(), system.N());
     Turntable::SetPlane(normal, distance, &target);
     if (residuals == Turntable::Residuals::kDepth)
-      AddForm(placements[t].profiles, pose, normal, distance, &target.views);
+      AddForm(placements[t].profiles, system, normal, distance, &target.views);
+    const Quantity& linearity = model->quantities()[Turntable::kLinearity];
+    if (residuals == Turntable::Residuals::kDepth || linearity.role != Role::kHold || linearity.value != 0)
+      AddBend(system, placements[t].profiles, &target.views);
   }
-  const ScannedVolume volume = VolumeOf(placements);
-  for (size_t t = 0; residuals == Turntable::Residuals::kDepth && t < placements.size(); ++t)
-    AddBend(volume, placements[t].profiles, &fit.targets[t].views);
   Problem problem = MakeProblem<Turntable>(model, fit.targets);
   problem.WeighEqually(fit.sigma);
   Estimate from = NominalStart(problem);
-  Eigen::Index e = 0;
-  for (const int k : problem.With({Scope::kSystem}, Role::kEstimate)) {
-    if (k == Turntable::kM) from.system[e] = pose.M;
-    if (k == Turntable::kN) from.system[e] = pose.N;
-    ++e;
-  }
+  std::vector<double> values = Values(problem, from, 0);
+  std::copy(system.q.begin(), system.q.end(), values.begin());
+  SetValues(problem, values, 0, &from);
   fit.solution = Solve(std::move(problem), from, {max_iterations});
   return fit;
 }
@@ -83,8 +84,11 @@ TurntableFit TurntableScanner::FitWeighted(const TurntableFit& plain, int max_it
   return fit;
 }
 
-TurntablePose TurntableFit::Pose() const {
-  return TurntablePose::Of(Values(solution.problem, solution.fit.estimate, 0));
+System TurntableFit::Found() const {
+  const std::vector<double> values = Values(solution.problem, solution.fit.estimate, 0);
+  System found{{}, depths};
+  std::copy_n(values.begin(), found.q.size(), found.q.begin());
+  return found;
 }
 
 std::pair<Eigen::Vector3d, double> TurntableFit::Plane(size_t target) const {

@@ -12,14 +12,19 @@
 #include "models/turntable/volume.h"
 
 namespace scancal {
+
+using turntable::System;
+
 namespace {
 
 constexpr int kRoundsOfReading = 4;
 
-std::vector<double> Declared(const Turntable& model) {
-  std::vector<double> values;
-  for (const Quantity& quantity : model.quantities()) values.push_back(quantity.value);
-  return values;
+constexpr double kNodesOfReading = 60;  // a side
+
+System DeclaredOf(const Turntable& model) {
+  System system;
+  for (size_t k = 0; k < system.q.size(); ++k) system[k] = model.quantities()[k].value;
+  return system;
 }
 
 bool SamePoints(const std::vector<Placement>& a, const std::vector<Placement>& b) {
@@ -36,11 +41,31 @@ GridBox BoxOf(const TurntableDeclaration& declaration, const Turntable& model) {
   return box;
 }
 
-TurntablePose MiddleOf(const GridBox& box, const Turntable& model) {
-  TurntablePose pose = TurntablePose::Of(Declared(model));
-  pose.M = (box.lower[0] + box.upper[0]) / 2;
-  pose.N = (box.lower[1] + box.upper[1]) / 2;
-  return pose;
+// The same box with fewer nodes, if it has many: enough to begin a refinement.
+GridBox Coarse(GridBox box) {
+  const double longest = std::max(box.upper[0] - box.lower[0], box.upper[1] - box.lower[1]);
+  box.step = std::max(box.step, longest / kNodesOfReading);
+  return box;
+}
+
+System MiddleOf(const GridBox& box, const System& system) {
+  return system.With((box.lower[0] + box.upper[0]) / 2, (box.lower[1] + box.upper[1]) / 2);
+}
+
+std::array<double, 2> DepthsOf(const std::vector<RawScan>& scans) {
+  std::array<double, 2> depths = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const RawScan& scan : scans)
+    for (const RawProfile& profile : scan.profiles)
+      for (const double y : profile.y) depths = {std::min(depths[0], y), std::max(depths[1], y)};
+  return depths;
+}
+
+GridResult Search(const GridBox& box, const std::vector<PlaneStorey>& storeys) {
+  Progress progress("searching M, N");
+  const auto rmse = [&](const std::array<double, 2>& at, std::span<double> values) {
+    for (size_t t = 0; t < values.size(); ++t) values[t] = storeys[t].Rmse(at[0], at[1], PlaneFit::kOrthogonal);
+  };
+  return GridSearch(box, static_cast<int>(storeys.size()), rmse, 2, [&](double done) { progress.Show(done); });
 }
 
 }  // namespace
@@ -50,36 +75,41 @@ TurntableScanner::TurntableScanner(TurntableDeclaration declaration, Turntable m
 
 GridBox TurntableScanner::Box() const { return BoxOf(declaration_, model_); }
 
-TurntablePose TurntableScanner::Nominal() const { return TurntablePose::Of(Declared(model_)); }
-
-GridResult TurntableScanner::Search(const std::vector<PlaneStorey>& storeys) const {
-  Progress progress("searching M, N");
-  const auto rmse = [&](const std::array<double, 2>& at, std::span<double> values) {
-    for (size_t t = 0; t < values.size(); ++t) values[t] = storeys[t].Rmse(at[0], at[1], PlaneFit::kOrthogonal);
-  };
-  return GridSearch(Box(), static_cast<int>(storeys.size()), rmse, 2, [&](double done) { progress.Show(done); });
+System TurntableScanner::Declared() const {
+  System system = DeclaredOf(model_);
+  system.depths = VolumeOf(placements_).y;
+  return system;
 }
 
-Result<TurntableStart> TurntableScanner::Initialize() const {
+const Result<TurntableStart>& TurntableScanner::Start() const {
+  if (!start_) start_ = StartIn(Box());
+  return *start_;
+}
+
+Result<TurntableStart> TurntableScanner::StartIn(const GridBox& box) const {
   TurntableStart start;
-  const TurntablePose nominal = Nominal(), middle = MiddleOf(Box(), model_);
-  start.storeys = StoreysOf(placements_, nominal);
+  const System declared = Declared(), middle = MiddleOf(Box(), declared);
+  start.storeys = StoreysOf(placements_, declared);
   SCANCAL_RETURN_IF_ERROR(CheckOrientations(model_.quantities(), placements_, start.storeys, middle));
-  start.grid = Search(start.storeys);
-  start.pose = nominal;
-  start.pose.M = start.grid.best.at[0];
-  start.pose.N = start.grid.best.at[1];
+  start.grid = Search(box, start.storeys);
+  start.system = declared.With(start.grid.best.at[0], start.grid.best.at[1]);
   // The noise of a lidar can pull the minimum of S far away. The middle of the interval is free of that, and two starts
   // that end in one place are no local minimum.
   double least = std::numeric_limits<double>::infinity();
-  for (const TurntablePose& from : {TurntablePose(start.pose), middle}) {
+  for (const System& from : {System(start.system), middle}) {
     const TurntableFit fit = Fit(from, Turntable::Residuals::kDepth);
     if (!(fit.solution.fit.cost < least) || !CheckDetermined(fit).ok()) continue;
     least = fit.solution.fit.cost;
-    start.pose = fit.Pose();
+    start.system = fit.Found();
   }
-  SCANCAL_RETURN_IF_ERROR(CheckIncidence(placements_, start.storeys, start.pose));
+  SCANCAL_RETURN_IF_ERROR(CheckIncidence(placements_, start.system));
   return start;
+}
+
+// The search as it would be, had the data set declared what was found besides M and N: only its minimum is comparable.
+GridResult TurntableScanner::SearchKnowing(const System& found, const TurntableStart& start) const {
+  const bool as_declared = Declared().With(found.M(), found.N()).q == found.q;
+  return as_declared ? start.grid : Search(Box(), StoreysOf(placements_, found));
 }
 
 Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) const {
@@ -89,9 +119,9 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
   const bool weighted = !plane && !choice.equal_weights;
   if (!weighted && choice.monte_carlo.trials > 0)
     return Error{"montecarlo: found equal weights, expected estimated ones: only they say how large all noise is"};
-  SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Initialize());
+  SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Start());
   const auto began = std::chrono::steady_clock::now();
-  TurntableFit fit = Fit(start.pose, plane ? Turntable::Residuals::kPlane : Turntable::Residuals::kDepth, {}, {},
+  TurntableFit fit = Fit(start.system, plane ? Turntable::Residuals::kPlane : Turntable::Residuals::kDepth, {}, {},
                          choice.max_iterations);
   SCANCAL_RETURN_IF_ERROR(CheckDetermined(fit));
   if (weighted) fit = FitWeighted(fit, choice.max_iterations);
@@ -113,11 +143,11 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
                  start.grid.best.value,
                  box.step,
                  static_cast<double>(start.grid.nodes)};
-  const ScannedVolume volume = VolumeOf(placements_);
+  const System found = fit.Found();
   for (size_t t = 0; t < result.targets.size(); ++t) {
     TargetSummary& target = result.targets[t];
     const std::vector<double> values = Values(fit.solution.problem, fit.solution.fit.estimate, t);
-    target.residual_tables = ResidualTables({placements_[t], fit.targets[t], values, volume});
+    target.residual_tables = ResidualTables({placements_[t], fit.targets[t], values, found});
     target.missing = placements_[t].missing;
     target.set_aside = placements_[t].set_aside;
     target.residuals = ResidualsOf(placements_[t]);
@@ -128,9 +158,9 @@ Result<Calibration> TurntableScanner::Calibrate(const RefineChoice& choice) cons
   if (plane)
     result.warnings.push_back(
         "point-to-plane residuals are biased by the noise along depth; the depth residual is not");
-  JudgeTurntable(box, placements_, start, fit, &result);
+  JudgeTurntable(box, placements_, SearchKnowing(found, start), fit, &result);
   AddVolume(placements_, &result);
-  AddSurface(box, start.storeys, &result);
+  AddSurface(box, start.storeys, StoreysOf(placements_, found), &result);
   AddScene(placements_, &result);
   return result;
 }
@@ -149,20 +179,22 @@ Result<std::unique_ptr<Scanner>> LoadTurntable(const Dataset& dataset) {
 }
 
 // Setting aside needs M and N, finding them needs clean points: in turn, until nothing changes. The first round is in
-// the middle of the search interval.
+// the middle of the search interval; a coarse search begins the same refinement as the declared one.
 Result<std::unique_ptr<TurntableScanner>> CompressTurntable(const TurntableDeclaration& declaration,
                                                             const Turntable& model, const std::vector<RawScan>& scans) {
   std::unique_ptr<TurntableScanner> scanner;
-  TurntablePose pose = MiddleOf(BoxOf(declaration, model), model);
+  const GridBox box = BoxOf(declaration, model);
+  System system = MiddleOf(box, DeclaredOf(model));
+  system.depths = DepthsOf(scans);
   for (int round = 0; round < kRoundsOfReading; ++round) {
     std::vector<Placement> placements;
-    for (const RawScan& scan : scans) placements.push_back(CompressPlacement(scan, pose));
+    for (const RawScan& scan : scans) placements.push_back(CompressPlacement(scan, system));
     if (scanner && SamePoints(placements, scanner->placements())) break;
     SCANCAL_RETURN_IF_ERROR(CheckPlausible(placements, declaration.dataset.units));
     scanner = std::make_unique<TurntableScanner>(declaration, model, std::move(placements));
-    const Result<TurntableStart> start = scanner->Initialize();
+    const Result<TurntableStart> start = scanner->StartIn(Coarse(box));
     if (!start.ok()) break;  // Calibrate will say so
-    pose = start->pose;
+    system = start->system;
   }
   return scanner;
 }

@@ -13,14 +13,14 @@
 namespace scancal {
 
 // One a placement.
-std::vector<PlaneStorey> StoreysOf(const std::vector<Placement>& placements, const TurntablePose& tilts);
+std::vector<PlaneStorey> StoreysOf(const std::vector<Placement>& placements, const turntable::System& system);
 
 // Where refinement starts: the minimum of the grid search, or what a depth fit finds from there or, if that is better,
 // from the middle of the search interval.
 struct TurntableStart {
-  std::vector<PlaneStorey> storeys;  // one a placement, at the tilts that the data set declares
+  std::vector<PlaneStorey> storeys;  // one a placement, of the system as the data set declares it
   GridResult grid;
-  TurntablePose pose;
+  turntable::System system;
 };
 
 // A joint fit of M, N, the planes, and what else is estimated.
@@ -28,7 +28,8 @@ struct TurntableFit {
   std::vector<Turntable::Target> targets;  // as they entered: the planes from which normal_1, normal_2, distance count
   Solution solution;
   double sigma = 1;  // by which the rows were divided, mm
-  TurntablePose Pose() const;
+  std::array<double, 2> depths{};
+  turntable::System Found() const;
   std::pair<Eigen::Vector3d, double> Plane(size_t target) const;
 };
 
@@ -44,25 +45,28 @@ class TurntableScanner final : public Scanner {
   Result<Comparison> Compare(const CompareChoice& choice) const override;
   Result<void> WriteSurface(const std::filesystem::path& file) const override;
 
-  // M or N that are not estimated keep their value.
-  Result<TurntableStart> Initialize() const;
-  // From planes fitted in closed form at `pose`; estimate: indices of further quantities to be estimated
-  // (Turntable::kTiltX); without: leave that placement out.
-  TurntableFit Fit(const TurntablePose& pose, Turntable::Residuals residuals, const std::vector<int>& estimate = {},
+  // Computed once. M or N that are not estimated keep their value.
+  const Result<TurntableStart>& Start() const;
+  // The same from a search over another box.
+  Result<TurntableStart> StartIn(const GridBox& box) const;
+  // From planes fitted in closed form to the points as `system` sees them; estimate: indices of further quantities to
+  // be estimated (Turntable::kTiltX); without: leave that placement out.
+  TurntableFit Fit(const turntable::System& system, Turntable::Residuals residuals, const std::vector<int>& estimate = {},
                    std::optional<size_t> without = {}, int max_iterations = 100) const;
   // The headline: from a depth fit with equal weights to its variances and generalised least squares.
   TurntableFit FitWeighted(const TurntableFit& plain, int max_iterations = 100) const;
   const std::vector<Placement>& placements() const { return placements_; }
-  TurntablePose Nominal() const;  // every quantity as declared: what the search uses for all but M and N
+  turntable::System Declared() const;  // what the search uses for all but M and N
   // The box of the search with the declared step.
   GridBox Box() const;
 
  private:
-  GridResult Search(const std::vector<PlaneStorey>& storeys) const;
+  GridResult SearchKnowing(const turntable::System& found, const TurntableStart& start) const;
 
   TurntableDeclaration declaration_;
   Turntable model_;
   std::vector<Placement> placements_;
+  mutable std::optional<Result<TurntableStart>> start_;
 };
 
 // From clean points in memory: sets aside what is off each plane, and compresses the rest.

@@ -6,6 +6,9 @@
 #include "io/units.h"
 
 namespace scancal {
+
+using turntable::System;
+
 namespace {
 
 constexpr double kPerpendicular = 1 * kDegree;  // a plate's normal nearer to the axis tells nothing of M and N
@@ -15,13 +18,16 @@ constexpr double kFarFromGrid = 5;  // of step and u
 constexpr double kEdgeOn = 0.02;    // cosine of the incidence
 
 // Smallest |n . d| over the profiles of a placement, d the direction along which the sensor measures.
-double LeastIncidence(const Placement& placement, const TurntablePose& pose, const Eigen::Vector3d& normal) {
+double LeastIncidence(const Placement& placement, const System& system, const Eigen::Vector3d& normal) {
   double least = 1;
   for (const Profile& profile : placement.profiles) {
     const PseudoPoint p = PseudoPoints(profile.factor)[1];
-    const Eigen::Vector3d origin = pose.Point(profile.alpha, 0, 0);
-    const Eigen::Vector3d towards = placement.IsLidar() ? pose.Point(profile.alpha, p.y, p.z) - origin
-                                                        : Eigen::Vector3d(pose.Point(profile.alpha, 1, 0) - origin);
+    const turntable::ProfileInTable<double> in_table = system.At(profile.alpha);
+    const auto along = [&](double y, double z) {
+      return Eigen::Vector3d(Eigen::Vector3d::Map(in_table.Point(y, z, 0).data()) -
+                             Eigen::Vector3d::Map(in_table.Point(0, 0, 0).data()));
+    };
+    const Eigen::Vector3d towards = placement.IsLidar() ? along(p.y, p.z) : along(1, 0);
     least = std::min(least, std::abs(normal.dot(towards.normalized())));
   }
   return least;
@@ -55,22 +61,22 @@ void JudgeOrientations(const TurntableFit& fit, Calibration* calibration) {
       "add a placement with the plate turned about the vertical by 20 deg or more against the others");
 }
 
-void JudgeSearch(const GridBox& box, const TurntableStart& start, Calibration* calibration) {
-  if (start.grid.best.on_edge)
+void JudgeSearch(const GridBox& box, const GridNode& least, Calibration* calibration) {
+  if (least.on_edge)
     calibration->unreliable.push_back(
         fmt::format("the grid minimum M = {:g}, N = {:g} mm lies on the edge of the search interval; "
                     "widen search in dataset.yaml",
-                    start.grid.best.at[0], start.grid.best.at[1]));
+                    least.at[0], least.at[1]));
   for (const size_t k : {0, 1}) {
     const Parameter* p = calibration->Find(k == 0 ? "M" : "N");
-    const double apart = std::abs(p->value - start.grid.best.at[k]);
-    if (p->role == Role::kEstimate && !start.grid.best.on_edge && apart > kFarFromGrid * (box.step + p->u))
+    const double apart = std::abs(p->value - least.at[k]);
+    if (p->role == Role::kEstimate && !least.on_edge && apart > kFarFromGrid * (box.step + p->u))
       calibration->unreliable.push_back(
           fmt::format("{}: the grid minimum lies {:.3g} mm from the refined value, more than step and u explain: the "
                       "noise pulls the "
                       "search away, or the model lacks something",
                       p->name, apart));
-    if (p->role == Role::kEstimate && (p->value < box.lower[k] || p->value > box.upper[k]) && !start.grid.best.on_edge)
+    if (p->role == Role::kEstimate && (p->value < box.lower[k] || p->value > box.upper[k]) && !least.on_edge)
       calibration->unreliable.push_back(fmt::format(
           "{} = {:.6g} mm lies outside the search interval; widen search in dataset.yaml, or look at the scans",
           p->name, p->value));
@@ -80,10 +86,10 @@ void JudgeSearch(const GridBox& box, const TurntableStart& start, Calibration* c
 }  // namespace
 
 Result<void> CheckOrientations(const Quantities& quantities, const std::vector<Placement>& placements,
-                               const std::vector<PlaneStorey>& storeys, const TurntablePose& pose) {
+                               const std::vector<PlaneStorey>& storeys, const System& system) {
   bool all_perpendicular = true;
   for (size_t t = 0; t < placements.size(); ++t) {
-    const Eigen::Vector3d normal = storeys[t].FitPlane(pose.M, pose.N).first;
+    const Eigen::Vector3d normal = storeys[t].FitPlane(system.M(), system.N()).first;
     all_perpendicular &= std::abs(normal.z()) > std::cos(kPerpendicular);
   }
   std::vector<std::string> names;
@@ -96,13 +102,12 @@ Result<void> CheckOrientations(const Quantities& quantities, const std::vector<P
   return {};
 }
 
-Result<void> CheckIncidence(const std::vector<Placement>& placements, const std::vector<PlaneStorey>& storeys,
-                            const TurntablePose& pose) {
-  for (size_t t = 0; t < placements.size(); ++t) {
-    const Eigen::Vector3d normal = storeys[t].FitPlane(pose.M, pose.N).first;
-    if (LeastIncidence(placements[t], pose, normal) < kEdgeOn)
+Result<void> CheckIncidence(const std::vector<Placement>& placements, const System& system) {
+  for (const Placement& placement : placements) {
+    const Eigen::Vector3d normal = PlaneStorey(placement.profiles, system).FitPlane(system.M(), system.N()).first;
+    if (LeastIncidence(placement, system, normal) < kEdgeOn)
       return Error{
-          "target " + placements[t].name +
+          "target " + placement.name +
           ": the sensor sees the plate edge-on, where depth tells nothing; narrow its keep: angle, or leave it out"};
   }
   return {};
@@ -119,9 +124,9 @@ Result<void> CheckDetermined(const TurntableFit& fit) {
   return {};
 }
 
-void JudgeTurntable(const GridBox& box, const std::vector<Placement>& placements, const TurntableStart& start,
+void JudgeTurntable(const GridBox& box, const std::vector<Placement>& placements, const GridResult& grid,
                     const TurntableFit& fit, Calibration* calibration) {
-  JudgeSearch(box, start, calibration);
+  JudgeSearch(box, grid.best, calibration);
   JudgeOrientations(fit, calibration);
   double widest = 0;
   for (const Placement& placement : placements) widest = std::max(widest, placement.Sweep());

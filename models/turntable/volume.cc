@@ -9,7 +9,6 @@
 namespace scancal {
 namespace {
 
-constexpr double kNoExtent_mm = 1e-9;
 constexpr int kNodes = 5;        // of the grid, along each of alpha, y, z
 constexpr double kSlack = 0.01;  // of a range: rounded angles and uneven lines are not outside
 
@@ -43,10 +42,6 @@ bool Within(double value, const std::array<double, 2>& range) {
 }
 
 }  // namespace
-
-double ScannedVolume::Eta(double depth) const {
-  return (2 * depth - y[0] - y[1]) / std::max(y[1] - y[0], kNoExtent_mm);
-}
 
 std::string ScannedVolume::Beyond(double at_alpha, double at_y, double at_z) const {
   const auto told = [](const char* name, double value, const std::array<double, 2>& range, const char* unit) {

@@ -11,8 +11,6 @@ namespace scancal {
 
 struct ScannedVolume {
   std::array<double, 2> alpha{}, y{}, z{};  // from, to; rad, mm
-  // From -1 to 1 over the depths: what linearity refers to.
-  double Eta(double depth) const;
   // "y = 300 mm (scanned: 40 to 120 mm)" of the first coordinate that lies outside by more than a hundredth of the
   // range; else empty.
   std::string Beyond(double alpha, double y, double z) const;

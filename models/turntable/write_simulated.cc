@@ -16,7 +16,7 @@ Result<void> CheckScene(const TurntableScene& scene, const std::vector<Simulated
   for (const SimulatedPlacement& placement : placements)
     for (const SimulatedProfile& profile : placement.profiles)
       for (const double y : profile.y)
-        if (std::abs(y) > 10 * (std::hypot(scene.pose.M, scene.pose.N) + 1000))
+        if (std::abs(y) > 10 * (std::hypot(scene.system.M(), scene.system.N()) + 1000))
           return Error{"placement " + placement.name + ": at " + std::to_string(profile.alpha / kDegree) +
                        " deg the profiler looks past the plate; use a narrower sweep"};
   return {};
@@ -25,8 +25,8 @@ Result<void> CheckScene(const TurntableScene& scene, const std::vector<Simulated
 Result<void> CheckNumbers(const TurntableScene& scene) {
   const auto is_share = [](double share) { return share >= 0 && share < 1; };
   const auto not_negative = [](double x) { return x >= 0 && std::isfinite(x); };
-  for (const double number : {scene.pose.M, scene.pose.N, scene.pose.tilt_x, scene.pose.tilt_y})
-    if (!std::isfinite(number)) return Error{"M, N and tilts: expected finite numbers"};
+  for (const double number : scene.system.q)
+    if (!std::isfinite(number)) return Error{"M, N, tilts and errors: expected finite numbers"};
   if (scene.placements < 1 || scene.profiles < 1 || scene.points < 1)
     return Error{"placements, profiles and points: expected one or more of each"};
   if (!is_share(scene.outliers) || !is_share(scene.background) || !is_share(scene.missing))
@@ -121,10 +121,9 @@ std::string DatasetYaml(const TurntableScene& scene, const std::vector<Simulated
 Json Truth(const TurntableScene& scene, const std::vector<SimulatedPlacement>& placements) {
   Json truth;
   truth["units"] = "mm, rad";
-  truth["M"] = scene.pose.M;
-  truth["N"] = scene.pose.N;
-  truth["tilt_x"] = scene.pose.tilt_x;
-  truth["tilt_y"] = scene.pose.tilt_y;
+  const Quantities quantities = Turntable(Turntable::Residuals::kDepth).quantities();
+  for (size_t k = 0; k < scene.system.q.size(); ++k) truth[quantities[k].name] = scene.system[k];
+  if (scene.system[Turntable::kLinearity] != 0) truth["linearity_depths"] = WithDepths(scene).depths;
   truth["noise_y"] = scene.noise_y;
   truth["line_correlation"] = scene.line_correlation;
   truth["encoder_jitter"] = scene.encoder_jitter;

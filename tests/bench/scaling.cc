@@ -26,9 +26,9 @@ std::vector<Placement> MakeCompressed(int profiles_per_placement, int points_per
     placement.name = planes[t].name;
     for (int k = 0; k < profiles_per_placement; ++k) {
       const double alpha = scene.sweep * ((k + 0.5) / profiles_per_placement - 0.5);
-      const Eigen::Vector3d origin = scene.pose.Point(alpha, 0, 0);
-      const double by_y = planes[t].normal.dot(scene.pose.Point(alpha, 1, 0) - origin);
-      const double by_z = planes[t].normal.dot(scene.pose.Point(alpha, 0, 1) - origin);
+      const Eigen::Vector3d origin = scene.system.Point(alpha, 0, 0);
+      const double by_y = planes[t].normal.dot(scene.system.Point(alpha, 1, 0) - origin);
+      const double by_z = planes[t].normal.dot(scene.system.Point(alpha, 0, 1) - origin);
       for (int i = 0; i < points_per_profile; ++i) {
         z[i] = scene.line_length * ((i + 0.5) / points_per_profile - 0.5);
         y[i] =

@@ -7,8 +7,8 @@ namespace scancal::bench {
 
 TurntableScene LargeScene() {
   TurntableScene scene;
-  scene.pose.M = 123.4;
-  scene.pose.N = 408.7;
+  scene.system[Turntable::kM] = 123.4;
+  scene.system[Turntable::kN] = 408.7;
   scene.profiles = scene.points = 1000;
   scene.noise_y = 0.05;
   scene.seed = 1;
@@ -30,7 +30,7 @@ std::vector<Placement> Compress(const std::vector<SimulatedPlacement>& points) {
 std::vector<PlaneStorey> Storeys(const std::vector<Placement>& placements) {
   std::vector<PlaneStorey> storeys;
   for (const Placement& placement : placements)
-    storeys.emplace_back(Views(placement.profiles, Turntable::Residuals::kPlane), TurntablePose{});
+    storeys.emplace_back(placement.profiles, turntable::System{});
   return storeys;
 }
 

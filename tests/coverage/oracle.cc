@@ -17,8 +17,8 @@ void Set(Turntable::Index index, Role role, double u, Turntable* model) {
 
 Turntable TrueModel(const TurntableScene& scene, double spread) {
   Turntable model(Turntable::Residuals::kDepth);
-  model.quantity(Turntable::kM).value = scene.pose.M;
-  model.quantity(Turntable::kN).value = scene.pose.N;
+  model.quantity(Turntable::kM).value = scene.system.M();
+  model.quantity(Turntable::kN).value = scene.system.N();
   const LineNoise excess = ExcessOfCorrelatedNoise(scene.line_correlation, scene.points, spread);
   Set(Turntable::kNoiseY, Role::kConsider, scene.noise_y, &model);
   Set(Turntable::kLineOffset, Role::kConsider, scene.noise_y * excess.offset, &model);
@@ -46,7 +46,7 @@ std::vector<Oracle::Bend> Oracle::BendsOf(const Plate& plate, const std::vector<
   const Eigen::Vector3d across = plate.normal.cross(Eigen::Vector3d::UnitZ()).normalized(),
                         up = across.cross(plate.normal);
   const auto at = [&](const SimulatedProfile& profile, size_t i) {
-    const Eigen::Vector3d p = scene_.pose.Point(profile.alpha, profile.y[i], profile.z[i]);
+    const Eigen::Vector3d p = scene_.system.Point(profile.alpha, profile.y[i], profile.z[i]);
     return Eigen::Vector2d(across.dot(p), up.dot(p));
   };
   Eigen::AlignedBox2d seen;

@@ -59,7 +59,7 @@ Trial Try(const Row& row, const Oracle& oracle, uint64_t seed) {
     return trial;
   }
   const Parameter &M = *result->Find("M"), &N = *result->Find("N");
-  trial.error = {M.value - scene.pose.M, N.value - scene.pose.N};
+  trial.error = {M.value - scene.system.M(), N.value - scene.system.N()};
   trial.U = {M.U, N.U};
   trial.U_naive = k * Eigen::Vector2d(M.u_naive, N.u_naive);
   trial.U_clustered = k * Eigen::Vector2d(M.u_clustered, N.u_clustered);

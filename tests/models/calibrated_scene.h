@@ -1,6 +1,7 @@
 // A turntable with errors, calibrated.
 #pragma once
 #include <gtest/gtest.h>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -37,30 +38,18 @@ inline TurntableScene SmallScene() {
 
 // What a profiler with these errors shows of the scene, calibrated. q: by Turntable::Index.
 inline Calibration Calibrated(TurntableScene scene, const Turntable& model, const std::vector<double>& q) {
-  const TurntablePose usual = scene.pose;
-  scene.pose = {usual.M * (1 + q[Turntable::kExpansion]),
-                usual.N * (1 + q[Turntable::kExpansion]),
-                q[Turntable::kTiltX],
-                q[Turntable::kTiltY],
-                0,
-                0};
+  const double M = scene.system.M(), N = scene.system.N();
+  std::copy_n(q.begin(), scene.system.q.size(), scene.system.q.begin());
+  scene.system[Turntable::kM] = M;
+  scene.system[Turntable::kN] = N;
   std::vector<Placement> placements;
-  for (SimulatedPlacement& simulated : SimulateTurntable(scene)) {
+  for (const SimulatedPlacement& simulated : SimulateTurntable(scene)) {
     Placement& placement = placements.emplace_back();
     placement.name = simulated.name;
-    for (SimulatedProfile& profile : simulated.profiles) {
-      const double error = Turntable::EncoderError(profile.alpha, Seen<double>{q.data(), nullptr, 0});
-      for (size_t i = 0; i < profile.y.size(); ++i) {
-        const double eta = (profile.y[i] - 95) / 130;  // about what the scene spans
-        profile.z[i] /= 1 + q[Turntable::kScaleZ];
-        profile.y[i] = (profile.y[i] - q[Turntable::kShear] * profile.z[i] - q[Turntable::kLinearity] * eta * eta) /
-                       (1 + q[Turntable::kScaleY]);
-      }
-      placement.profiles.push_back(CompressProfile(profile.alpha + error, profile.y, profile.z, {}));
-    }
+    placement.profiles = Compress(simulated);
   }
   TurntableDeclaration declaration;
-  declaration.search = {{usual.M - 1, usual.N - 1}, {usual.M + 1, usual.N + 1}, 1};
+  declaration.search = {{M - 1, N - 1}, {M + 1, N + 1}, 1};
   const auto result = TurntableScanner(declaration, model, placements).Calibrate({});
   EXPECT_TRUE(result.ok()) << result.error().message;
   return result.ok() ? *result : Calibration();

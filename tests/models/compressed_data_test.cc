@@ -36,7 +36,7 @@ std::vector<Placement> Placements(bool lidar) {
     scan.profiles[2].y.resize(1);  // one point, one segment
     scan.profiles[2].z.resize(1);
     if (lidar) scan.profiles[2].range.resize(1);
-    placements.push_back(CompressPlacement(scan, scene.pose));
+    placements.push_back(CompressPlacement(scan, scene.system));
   }
   return placements;
 }

@@ -30,7 +30,7 @@ TEST(NoiseAlongTheLine, IsNoForm) {
   scene.points = 100;
   scene.encoder_jitter = 0.002 * kDegree;
   TurntableDeclaration declaration;
-  declaration.search = SearchAround(scene.pose, 20, 30);
+  declaration.search = SearchAround(scene.system, 20, 30);
   for (uint64_t seed = 1; seed <= 3; ++seed) {
     scene.seed = seed;
     const auto scanner =

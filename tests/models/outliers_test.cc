@@ -42,7 +42,7 @@ class OutliersTest : public ::testing::Test {
       const Calibration result = Calibrated(scene);
       for (int k = 0; k < 2; ++k) {
         const Parameter& p = *result.Find(k == 0 ? "M" : "N");
-        const double error = p.value - (k == 0 ? scene.pose.M : scene.pose.N);
+        const double error = p.value - (k == 0 ? scene.system.M() : scene.system.N());
         study.u[k] += p.u / kSeeds;
         study.bias[k] += error / kSeeds;
         study.scatter[k] += error * error / kSeeds;

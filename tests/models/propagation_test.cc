@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 #include <cmath>
-#include "models/turntable/measured_point.h"
 #include "solver/random.h"
 #include "tests/models/calibrated_scene.h"
 
@@ -19,8 +18,9 @@ struct Reading {
 constexpr Reading kHere = {-12 * kDegree, 40, -70}, kThere = {15 * kDegree, 200, 80};
 
 Eigen::Vector3d PointOf(const Reading& reading, const ScannedVolume& volume, const std::vector<double>& q) {
-  return MeasuredPoint(reading.alpha, reading.y, reading.z, volume.Eta(reading.y),
-                       Seen<double>{q.data(), nullptr, static_cast<int>(q.size())});
+  turntable::System system{{}, volume.y};
+  std::copy_n(q.begin(), system.q.size(), system.q.begin());
+  return system.Point(reading.alpha, reading.y, reading.z);
 }
 
 PropagatedPoint At(const PointUncertainty& points, const Reading& reading) {
@@ -86,8 +86,8 @@ TEST(PointUncertainty, EqualsTheScatterOfRepeatedCalibrations) {
     std::vector<double> truth = NoErrors();
     for (const auto& [k, u] : kConsidered) truth[k] = u * random.Normal();
     const Calibration calibration = Calibrated(scene, model, truth);
-    truth[Turntable::kM] = scene.pose.M;
-    truth[Turntable::kN] = scene.pose.N;
+    truth[Turntable::kM] = scene.system.M();
+    truth[Turntable::kN] = scene.system.N();
     truth[Turntable::kExpansion] = 1e-4 * random.Normal();  // another day
     const PointUncertainty points = PointsOf(calibration);
     const PropagatedPoint here = At(points, kHere), there = At(points, kThere);
@@ -115,8 +115,8 @@ TEST(PointUncertainty, ATrueScaleErrorMovesAPointByWhatUSays) {
   q[Turntable::kScaleY] = kScale;
   const Calibration wrong = Calibrated(scene, ModelThatConsiders({{Turntable::kScaleY, kScale}}), q);
   const PropagatedPoint found = At(PointsOf(wrong), kHere);
-  q[Turntable::kM] = scene.pose.M;
-  q[Turntable::kN] = scene.pose.N;
+  q[Turntable::kM] = scene.system.M();
+  q[Turntable::kN] = scene.system.N();
   const Eigen::Vector3d error = found.position - PointOf(kHere, {}, q);
   for (int i = 0; i < 2; ++i) {
     EXPECT_NEAR(std::abs(error[i]), kScale * std::abs(found.position[i]), 2 * kScale * kScale * 500);
@@ -125,7 +125,7 @@ TEST(PointUncertainty, ATrueScaleErrorMovesAPointByWhatUSays) {
   EXPECT_NEAR(found.uncertainty.covariance(0, 1), error[0] * error[1], 1e-2 * std::abs(error[0] * error[1]));
   EXPECT_NEAR(found.uncertainty.U_max, 1.96 * error.norm(), 0.01 * error.norm());
   // Against the budget: u of N alone is larger than what the depth itself adds, and has its sign.
-  EXPECT_NEAR(wrong.Find("N")->u, kScale * scene.pose.N, 1e-3);
+  EXPECT_NEAR(wrong.Find("N")->u, kScale * scene.system.N(), 1e-3);
 }
 
 TEST(PointUncertainty, TheMountIsAsUncertainInUseAsItWasDuringTheCalibration) {
@@ -134,9 +134,9 @@ TEST(PointUncertainty, TheMountIsAsUncertainInUseAsItWasDuringTheCalibration) {
   scene.noise_y = 0;
   const Calibration calibration =
       Calibrated(scene, ModelThatConsiders({{Turntable::kExpansion, kExpansion}}), NoErrors());
-  EXPECT_NEAR(calibration.Find("M")->u, kExpansion * scene.pose.M, 1e-6);
+  EXPECT_NEAR(calibration.Find("M")->u, kExpansion * scene.system.M(), 1e-6);
   const PropagatedPoint point = PointsOf(calibration).At(0, 50, 0);
-  EXPECT_NEAR(std::sqrt(point.uncertainty.covariance(0, 0)), std::sqrt(2) * kExpansion * scene.pose.M, 1e-5);
+  EXPECT_NEAR(std::sqrt(point.uncertainty.covariance(0, 0)), std::sqrt(2) * kExpansion * scene.system.M(), 1e-5);
 }
 
 TEST(PointUncertainty, NeighboursShareTheirErrors) {

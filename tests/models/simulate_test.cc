@@ -97,7 +97,7 @@ std::vector<std::vector<double>> Heights(const TurntableScene& scene) {
     std::vector<double>& of_placement = heights.emplace_back();
     for (const SimulatedProfile& profile : placement.profiles)
       for (size_t i = 0; i < profile.y.size(); ++i)
-        of_placement.push_back(placement.normal.dot(scene.pose.Point(profile.alpha, profile.y[i], profile.z[i])) -
+        of_placement.push_back(placement.normal.dot(scene.system.Point(profile.alpha, profile.y[i], profile.z[i])) -
                                placement.distance);
   }
   return heights;

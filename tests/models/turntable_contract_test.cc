@@ -21,9 +21,9 @@ struct TurntableCase {
     scene.profiles = 40;
     scene.points = 12;
     scene.sweep = 40 * kDegree;
-    scene.pose.M *= kSignOfM;
-    scene.pose.tilt_x = kTilts ? 0.01 : 0;
-    scene.pose.tilt_y = kTilts ? -0.02 : 0;
+    scene.system[Turntable::kM] *= kSignOfM;
+    scene.system[Turntable::kTiltX] = kTilts ? 0.01 : 0;
+    scene.system[Turntable::kTiltY] = kTilts ? -0.02 : 0;
     scene.noise_y = 0.05 * options.noise;
     scene.seed = options.seed;
     return scene;
@@ -47,15 +47,15 @@ struct TurntableCase {
       as.scale_y_error = consider(Turntable::kScaleY, 2e-4) * random.Normal();
       Quantity& n = model.quantity(Turntable::kN);  // a prior, whose mean is drawn too
       n.u = 0.2;
-      n.value = scene.pose.N + n.u * random.Normal();
+      n.value = scene.system.N() + n.u * random.Normal();
     }
     ContractData data{MakeTurntableProblem(scene, as, model), {}, {}, 0};
     if (options.influences) data.problem.WeighEqually(scene.noise_y);
-    data.start = StartNear(data.problem, scene.pose);
+    data.start = StartNear(data.problem, scene.system);
     data.truth = data.start.system;
-    data.truth[0] = scene.pose.M;
-    data.truth[1] = scene.pose.N;
-    if (kTilts) data.truth.tail(2) << scene.pose.tilt_x, scene.pose.tilt_y;
+    data.truth[0] = scene.system.M();
+    data.truth[1] = scene.system.N();
+    if (kTilts) data.truth.tail(2) << scene.system[Turntable::kTiltX], scene.system[Turntable::kTiltY];
     data.count = 3.0 * scene.profiles * scene.points;
     return data;
   }
@@ -63,7 +63,7 @@ struct TurntableCase {
   static Eigen::VectorXd RoundTrip(double noise) {
     const TemporaryFolder folder;
     TurntableScene scene = Scene({noise, 1, true, false, false});
-    scene.search = SearchAround(scene.pose, 20, 30);
+    scene.search = SearchAround(scene.system, 20, 30);
     EXPECT_TRUE(WriteSimulatedTurntable(scene, ScanFileFormat::kNpy, folder.path()).ok());
     if (kTilts) {
       std::string yaml = folder.Read("dataset.yaml");
@@ -73,9 +73,9 @@ struct TurntableCase {
     const auto scanner = (*FindScannerKind(*dataset))->load(*dataset);
     const auto result = (*scanner)->Calibrate({kResiduals == Turntable::Residuals::kDepth ? "depth" : "plane"});
     EXPECT_TRUE(result.ok() && result->ok());
-    return Eigen::Vector4d(result->Find("M")->value - scene.pose.M, result->Find("N")->value - scene.pose.N,
-                           result->Find("tilt_x")->value - scene.pose.tilt_x,
-                           result->Find("tilt_y")->value - scene.pose.tilt_y);
+    return Eigen::Vector4d(result->Find("M")->value - scene.system.M(), result->Find("N")->value - scene.system.N(),
+                           result->Find("tilt_x")->value - scene.system[Turntable::kTiltX],
+                           result->Find("tilt_y")->value - scene.system[Turntable::kTiltY]);
   }
 
   // A plate perpendicular to the axis: every offset fits. (No profiler sees it; a lidar does.)

@@ -21,7 +21,7 @@ struct Scene {
 
 // Three bent plates before a profiler, or a lidar that stands farther back.
 inline Scene Scanned(int profiles, bool lidar = false) {
-  const TurntablePose truth{123, lidar ? 50.0 : 409.0, 0, 0, 0, 0};
+  const turntable::System truth{{123, lidar ? 50.0 : 409.0}, {}};
   Scene scene;
   Random random(1, 0);
   for (const auto& [turn, lean] : {std::pair{-25 * kDegree, 12 * kDegree}, {0, -8 * kDegree}, {25 * kDegree, 0.2}}) {
@@ -62,9 +62,9 @@ inline Calibration Calibrated(const TurntableScanner& scanner, const RefineChoic
 
 // Measured minus predicted along the line of sight, with the result's own numbers.
 inline double ResidualOf(const Point& p, const Calibration& c, size_t target, bool lidar = false) {
-  const TurntablePose pose{c.Find("M")->value, c.Find("N")->value, 0, 0, 0, 0};
+  const turntable::System system{{c.Find("M")->value, c.Find("N")->value}, {}};
   const Eigen::Vector3d normal = Eigen::Vector3d::Map(c.targets[target].geometry.at("normal").data()),
-                        measured = pose.Point(p.alpha, p.y, p.z), from = pose.Point(p.alpha, 0, lidar ? 0 : p.z);
+                        measured = system.Point(p.alpha, p.y, p.z), from = system.Point(p.alpha, 0, lidar ? 0 : p.z);
   return (normal.dot(measured) - c.targets[target].geometry.at("distance")[0]) /
          normal.dot((measured - from).normalized());
 }

@@ -167,16 +167,17 @@ TEST(TurntableFigures, NoProfileOneProfileAndOneAngleHaveTablesToo) {
   Turntable::SetPlane({0, -1, 0}, 480, &target);
   std::vector<double> values(Turntable(Turntable::Residuals::kDepth).quantities().size());
   values[Turntable::kN] = 409;
-  const ScannedVolume volume{};
-  EXPECT_THAT(ResidualTables({Placement(), target, values, volume}), IsEmpty());
+  turntable::System system;
+  system[Turntable::kN] = 409;
+  EXPECT_THAT(ResidualTables({Placement(), target, values, system}), IsEmpty());
   Placement one;
   one.profiles = {CompressProfile(0, std::vector{71.5}, std::vector{3.0}, {})};
-  NumberTables tables = ResidualTables({one, target, values, volume});
+  NumberTables tables = ResidualTables({one, target, values, system});
   EXPECT_THAT(tables.at("cells").rows, ElementsAre(ElementsAre(0, 0, 3, 3, 0.5, 1)));
   EXPECT_THAT(tables.at("sweep").rows, ElementsAre(ElementsAre(0, 0.5, 0)));
   EXPECT_THAT(tables.at("sweep_correlation").rows, ElementsAre(ElementsAre(0, 1)));
   one.profiles.push_back(CompressProfile(0, std::vector{70.5}, std::vector{5.0}, {}));  // a second sweep
-  tables = ResidualTables({one, target, values, volume});
+  tables = ResidualTables({one, target, values, system});
   EXPECT_THAT(tables.at("cells").rows, ElementsAre(ElementsAre(0, 0, 3, 5, 0, 2)));
   EXPECT_EQ(tables.at("sweep").rows.size(), 1U);
 }

@@ -35,7 +35,7 @@ Drawable MakeDrawable(Turntable::Residuals residuals) {
   Drawable d;
   d.problem = MakeTurntableProblem(scene, {residuals, true, false, 0}, model);
   d.problem.WeighEqually(scene.noise_y);
-  const Estimate start = Refine(d.problem, StartNear(d.problem, scene.pose)).estimate;
+  const Estimate start = Refine(d.problem, StartNear(d.problem, scene.system)).estimate;
   for (size_t t = 0; t < d.problem.targets.size(); ++t) {
     const std::vector<double> q = Values(d.problem, start, t);
     for (Block& view : d.problem.targets[t].views) {

@@ -59,12 +59,12 @@ inline std::vector<Turntable::Target> MakeTargets(std::vector<SimulatedPlacement
 }
 
 // M and N start half a millimetre from the truth.
-inline Estimate StartNear(const Problem& problem, const TurntablePose& truth) {
+inline Estimate StartNear(const Problem& problem, const turntable::System& truth) {
   Estimate start = NominalStart(problem);
   const std::vector<int> system = problem.With({Scope::kSystem}, Role::kEstimate);
   for (size_t k = 0; k < system.size(); ++k) {
-    if (system[k] == Turntable::kM) start.system[static_cast<Eigen::Index>(k)] = truth.M + 0.5;
-    if (system[k] == Turntable::kN) start.system[static_cast<Eigen::Index>(k)] = truth.N - 0.5;
+    if (system[k] == Turntable::kM) start.system[static_cast<Eigen::Index>(k)] = truth.M() + 0.5;
+    if (system[k] == Turntable::kN) start.system[static_cast<Eigen::Index>(k)] = truth.N() - 0.5;
   }
   return start;
 }

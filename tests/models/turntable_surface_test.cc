@@ -16,7 +16,7 @@ using ::testing::Ge;
 TEST(TurntableFigures, TheSurfaceSpansTheSearchAndTheResult) {
   const TurntableScanner scanner = ScannerOf(Scanned(40).placements, {{110.5, 395}, {130.5, 425}, 0.1});
   const Calibration c = Calibrated(scanner);
-  const TurntableStart start = *scanner.Initialize();
+  const TurntableStart start = *scanner.Start();
   for (const auto& [name, size] : {std::pair{"search", 61U * 61U}, {"near", 41U * 41U}}) {
     const NumberTable& table = c.surface.at(name);
     EXPECT_THAT(table.columns, ElementsAre("M", "N", "S"));
@@ -88,9 +88,9 @@ TEST(TurntableFigures, TheSceneStandsInTheTableFrame) {
       EXPECT_NEAR(normal.dot(Eigen::Vector3d::Map(view.data() + 3)), distance, 0.1);
       EXPECT_NEAR(view[5], 0, 1e-6);
     }
-    const TurntablePose pose{c.Find("M")->value, c.Find("N")->value, 0, 0, 0, 0};
-    EXPECT_NEAR((Eigen::Vector3d::Map(views[0].data()) - pose.Point(-15 * kDegree, 0, 0)).norm(), 0, 1e-9);
-    EXPECT_NEAR((Eigen::Vector3d::Map(views[8].data()) - pose.Point(15 * kDegree, 0, 0)).norm(), 0, 1e-9);
+    const turntable::System system{{c.Find("M")->value, c.Find("N")->value}, {}};
+    EXPECT_NEAR((Eigen::Vector3d::Map(views[0].data()) - system.Point(-15 * kDegree, 0, 0)).norm(), 0, 1e-9);
+    EXPECT_NEAR((Eigen::Vector3d::Map(views[8].data()) - system.Point(15 * kDegree, 0, 0)).norm(), 0, 1e-9);
   }
 }
 

@@ -23,9 +23,9 @@ Study Repeat(TurntableScene scene, Turntable::Residuals residuals, int trials) {
     scene.seed = static_cast<uint64_t>(trial) + 1;
     Problem problem = MakeTurntableProblem(scene, {residuals, true, false, 0}, Turntable(residuals));
     problem.WeighEqually(scene.noise_y);
-    const Solution solution = Solve(problem, StartNear(problem, scene.pose));
+    const Solution solution = Solve(problem, StartNear(problem, scene.system));
     EXPECT_TRUE(solution.fit.converged);
-    const Eigen::Vector2d error = solution.fit.estimate.system - Eigen::Vector2d(scene.pose.M, scene.pose.N);
+    const Eigen::Vector2d error = solution.fit.estimate.system - Eigen::Vector2d(scene.system.M(), scene.system.N());
     study.mean += error / trials;
     study.scatter += error.cwiseAbs2() / trials;
     study.naive += NaiveCovariance(problem, solution.linear).matrix.diagonal() / trials;
@@ -95,7 +95,7 @@ TEST(TurntableUncertainty, TheJackknifeWarnsWhenPlacementsDisagree) {
   Problem problem = MakeProblem<Turntable>(std::make_shared<const Turntable>(Turntable::Residuals::kDepth),
                                            MakeTargets(placements, {}));
   problem.WeighEqually(scene.noise_y);
-  const Estimate start = StartNear(problem, scene.pose);
+  const Estimate start = StartNear(problem, scene.system);
   const Calibration result = Summarize(Solve(std::move(problem), start), {});
   ASSERT_FALSE(result.warnings.empty());
   EXPECT_NE(result.warnings[0].find("N: leaving one target out"), std::string::npos) << result.warnings[0];
@@ -121,7 +121,7 @@ TEST(TurntableUncertainty, IsInRadiansForTilts) {  // Ceres 2.1's own manifolds 
   for (int trial = 0; trial < kTrials; ++trial) {
     scene.seed = static_cast<uint64_t>(trial) + 1;
     const Problem problem = MakeTurntableProblem(scene, {}, model);
-    const Solution solution = Solve(problem, StartNear(problem, scene.pose));
+    const Solution solution = Solve(problem, StartNear(problem, scene.system));
     scatter += solution.fit.estimate.system.tail<2>().cwiseAbs2() / kTrials;
     stated += NaiveCovariance(problem, solution.linear).matrix.diagonal().tail<2>() / kTrials;
   }
@@ -150,9 +150,9 @@ TEST(Turntable, MirroredSenseFitsWithMinusM) {  // wrong sense of rotation leave
   const Problem mirrored = MakeProblem<Turntable>(std::make_shared<const Turntable>(Turntable::Residuals::kDepth),
                                                   MakeTargets(placements, {}));
   const Problem right = MakeTurntableProblem(scene, {}, Turntable(Turntable::Residuals::kDepth));
-  TurntablePose opposite = scene.pose;
-  opposite.M = -opposite.M;
-  const Fit a = Refine(right, StartNear(right, scene.pose)), b = Refine(mirrored, StartNear(mirrored, opposite));
+  turntable::System opposite = scene.system;
+  opposite[Turntable::kM] = -opposite.M();
+  const Fit a = Refine(right, StartNear(right, scene.system)), b = Refine(mirrored, StartNear(mirrored, opposite));
   EXPECT_NEAR(a.estimate.system[0], -b.estimate.system[0], 1e-9);
   EXPECT_NEAR(a.estimate.system[1], b.estimate.system[1], 1e-9);
   EXPECT_NEAR(a.cost, b.cost, 1e-9 * a.cost);
@@ -169,18 +169,18 @@ TEST(Turntable, OnePointAProfileIsEnough) {
     for (size_t k = 0; k < placement.profiles.size(); ++k) {
       SimulatedProfile& profile = placement.profiles[k];
       const double z = 40 * std::sin(1.7 * static_cast<double>(k));
-      const Eigen::Vector3d origin = scene.pose.Point(profile.alpha, 0, z),
-                            along = scene.pose.Point(profile.alpha, 1, z) - origin;
+      const Eigen::Vector3d origin = scene.system.Point(profile.alpha, 0, z),
+                            along = scene.system.Point(profile.alpha, 1, z) - origin;
       profile.z = {z};
       profile.y = {(placement.distance - placement.normal.dot(origin)) / placement.normal.dot(along)};
     }
   }
   const Problem problem = MakeProblem<Turntable>(std::make_shared<const Turntable>(Turntable::Residuals::kDepth),
                                                  MakeTargets(placements, {}));
-  const Fit fit = Refine(problem, StartNear(problem, scene.pose));
+  const Fit fit = Refine(problem, StartNear(problem, scene.system));
   EXPECT_TRUE(fit.converged) << fit.message;
-  EXPECT_NEAR(fit.estimate.system[0], scene.pose.M, 1e-9);
-  EXPECT_NEAR(fit.estimate.system[1], scene.pose.N, 1e-9);
+  EXPECT_NEAR(fit.estimate.system[0], scene.system.M(), 1e-9);
+  EXPECT_NEAR(fit.estimate.system[1], scene.system.N(), 1e-9);
 }
 
 TEST(Turntable, NodesGiveTheSameCostAsAllProfiles) {
@@ -188,7 +188,7 @@ TEST(Turntable, NodesGiveTheSameCostAsAllProfiles) {
   const Problem problem = MakeTurntableProblem(scene, {Turntable::Residuals::kPlane, true, false, 0},
                                                Turntable(Turntable::Residuals::kPlane));
   ASSERT_TRUE(problem.NodesSuffice());
-  const Estimate start = StartNear(problem, scene.pose);
+  const Estimate start = StartNear(problem, scene.system);
   const Linearization views = Linearize(problem, start, Storey::kViews),
                       nodes = Linearize(problem, start, Storey::kNodes);
   EXPECT_NEAR(nodes.cost, views.cost, 1e-11 * views.cost);

@@ -14,7 +14,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const TurntablePose kTruth = {123, 409, 0, 0, 0, 0};
+const turntable::System kTruth = {{123, 409}, {}};
 const Units kUnits;  // mm, deg
 
 struct PlateAt {
@@ -93,8 +93,8 @@ class VerdictsTest : public ::testing::Test {
   }
   static void ExpectTruth(const Calibration& calibration) {
     ASSERT_TRUE(calibration.Find("M") && calibration.Find("N"));
-    EXPECT_NEAR(calibration.Find("M")->value, kTruth.M, 4 * calibration.Find("M")->u);
-    EXPECT_NEAR(calibration.Find("N")->value, kTruth.N, 4 * calibration.Find("N")->u);
+    EXPECT_NEAR(calibration.Find("M")->value, kTruth.M(), 4 * calibration.Find("M")->u);
+    EXPECT_NEAR(calibration.Find("N")->value, kTruth.N(), 4 * calibration.Find("N")->u);
   }
   static std::string Joined(const std::vector<std::string>& sentences) {
     std::string all;
@@ -212,7 +212,7 @@ TEST_F(VerdictsTest, AHeldOffsetHasNoEdge) {
     model->quantity(Turntable::kM).value = kTruth.M;
   }));
   EXPECT_TRUE(calibration.ok()) << Joined(calibration.unreliable);
-  EXPECT_EQ(calibration.Find("M")->value, kTruth.M);
+  EXPECT_EQ(calibration.Find("M")->value, kTruth.M());
 }
 
 TEST_F(VerdictsTest, UnitsThatCannotBe) {

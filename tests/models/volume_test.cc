@@ -35,8 +35,6 @@ TEST(Volume, SpansWhatWasScanned) {
   EXPECT_NEAR(volume.y[1], highest, line);
   EXPECT_LE(volume.y[0], lowest);
   EXPECT_GE(volume.y[1], highest);
-  EXPECT_EQ(volume.Eta(volume.y[0]), -1);
-  EXPECT_EQ(volume.Eta(volume.y[1]), 1);
   EXPECT_THAT(volume.Beyond(0, 100, 0), IsEmpty());
   EXPECT_THAT(volume.Beyond(21 * kDegree, 1e4, 0), HasSubstr("alpha = 21 deg (scanned: -20 to 20 deg)"));
   EXPECT_THAT(volume.Beyond(0, 1e4, 0), HasSubstr("y = 1e+04 mm (scanned: "));

@@ -31,7 +31,7 @@ std::vector<std::vector<Measurement>> Measurements(const std::vector<SimulatedPl
 std::vector<PlaneStorey> Storeys(const std::vector<SimulatedPlacement>& placements) {
   std::vector<PlaneStorey> storeys;
   for (const SimulatedPlacement& placement : placements)
-    storeys.emplace_back(Views(Compress(placement), Turntable::Residuals::kPlane), TurntablePose{});
+    storeys.emplace_back(Compress(placement), turntable::System{});
   return storeys;
 }
 
@@ -40,7 +40,7 @@ TEST(Zhao2021, Equation7IsTheSimplifiedModelWhereItHolds) {
     for (const double N : {-20.0, 0.0, 409.0})
       for (const double y : {20.001, 75.0, 300.0})
         for (double alpha = -3; alpha <= 3; alpha += 0.37) {
-          const Eigen::Vector3d p = TurntablePose{M, N, 0, 0, 0, 0}.Point(alpha, y, -12);
+          const Eigen::Vector3d p = turntable::System{{M, N}, {}}.Point(alpha, y, -12);
           EXPECT_LT((zhao_2021::Transform(M, N, {alpha, y, -12}) - p).norm(), 1e-10);
           EXPECT_NEAR(p.x(), M * std::cos(alpha) - (N + y) * std::sin(alpha), 1e-10);
           EXPECT_NEAR(p.y(), -M * std::sin(alpha) - (N + y) * std::cos(alpha), 1e-10);
@@ -49,8 +49,8 @@ TEST(Zhao2021, Equation7IsTheSimplifiedModelWhereItHolds) {
 
 TEST(Zhao2021, Equation7IsWrongElsewhereAsPrinted) {
   const Measurement p{0.2, 75, 0};
-  EXPECT_GT((zhao_2021::Transform(-123, 409, p) - TurntablePose{-123, 409, 0, 0, 0, 0}.Point(0.2, 75, 0)).norm(), 100);
-  EXPECT_GT((zhao_2021::Transform(123, -409, p) - TurntablePose{123, -409, 0, 0, 0, 0}.Point(0.2, 75, 0)).norm(), 100);
+  EXPECT_GT((zhao_2021::Transform(-123, 409, p) - turntable::System{{-123, 409}, {}}.Point(0.2, 75, 0)).norm(), 100);
+  EXPECT_GT((zhao_2021::Transform(123, -409, p) - turntable::System{{123, -409}, {}}.Point(0.2, 75, 0)).norm(), 100);
 }
 
 TEST(Zhao2021, FitsAPlaneByLeastSquaresInZ) {
@@ -94,7 +94,7 @@ TEST(PlaneStorey, OrthogonalRmseIsTheSmallestSingularValue) {
   for (const auto& [M, N] : {std::pair{123.0, 409.0}, {100.0, 450.0}, {-50.0, 0.0}}) {
     Eigen::MatrixXd rows(std::ssize(points), 3);
     for (Eigen::Index i = 0; i < rows.rows(); ++i)
-      rows.row(i) = TurntablePose{M, N, 0, 0, 0, 0}.Point(points[i].alpha, points[i].y, points[i].z).transpose();
+      rows.row(i) = turntable::System{{M, N}, {}}.Point(points[i].alpha, points[i].y, points[i].z).transpose();
     const Eigen::MatrixXd centred = rows.rowwise() - rows.colwise().mean();
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(centred, Eigen::ComputeThinV);
     const double expected = svd.singularValues()[2] / std::sqrt(static_cast<double>(rows.rows()));
@@ -106,7 +106,7 @@ TEST(PlaneStorey, OrthogonalRmseIsTheSmallestSingularValue) {
 }
 
 TEST(PlaneStorey, ThePublishedFitFailsOnAPlateParallelToTheAxis) {
-  std::vector<Turntable::View> views;
+  std::vector<Profile> profiles;
   Random random(1, 0);
   for (int k = 0; k <= 20; ++k) {
     const double alpha = -0.25 + 0.025 * k, depth = (500 - 123 * std::sin(alpha)) / std::cos(alpha) - 409;
@@ -115,21 +115,20 @@ TEST(PlaneStorey, ThePublishedFitFailsOnAPlateParallelToTheAxis) {
       y.push_back(depth + 0.05 * random.Normal());
       z.push_back(10.0 * i - 100);
     }
-    const auto points = PseudoPoints(Factor(y, z));
-    views.push_back({alpha, {points.begin(), points.end()}, 20, false});
+    profiles.push_back(CompressProfile(alpha, y, z, {}));
   }
-  const PlaneStorey storey(views, TurntablePose{});
+  const PlaneStorey storey(profiles, turntable::System{});
   EXPECT_NEAR(storey.Rmse(123, 409, PlaneFit::kOrthogonal), 0.05, 0.005);
   EXPECT_GT(storey.Rmse(123, 409, PlaneFit::kVertical), 20 * 0.05);
 }
 
 TEST(PlaneStorey, KnowsTheTilts) {
   TurntableScene scene = SmallScene();
-  scene.pose.tilt_x = 0.02;
-  scene.pose.tilt_y = -0.03;
+  scene.system[Turntable::kTiltX] = 0.02;
+  scene.system[Turntable::kTiltY] = -0.03;
   scene.noise_y = 0;
   const auto placements = SimulateTurntable(scene);
-  const PlaneStorey knowing(Views(Compress(placements[0]), Turntable::Residuals::kPlane), scene.pose);
+  const PlaneStorey knowing(Compress(placements[0]), scene.system);
   EXPECT_LT(knowing.Rmse(123, 409, PlaneFit::kOrthogonal), 1e-10);
   EXPECT_GT(Storeys(placements)[0].Rmse(123, 409, PlaneFit::kOrthogonal), 0.1);
 }
