@@ -1,4 +1,9 @@
-"""Pages to test: of calibrations that the program makes now, none of them kept."""
+"""Pages to test: of calibrations that the program makes now.
+
+Called as a program it makes all of them in the folder SCANCAL_PAGES, where the tests of one run find them; without
+that variable every test makes those that it needs, and keeps none.
+"""
+import concurrent.futures
 import functools
 import json
 import os
@@ -26,12 +31,15 @@ PRINTED = ["sample", "robot", "named_robot"]  # a PDF takes its time
 LANGUAGES = {"named": ["en"], "named_robot": ["en"], "many_targets": ["en"], "many_stations": ["en"]}  # else both
 
 _folder = tempfile.TemporaryDirectory(prefix="scancal_page_")
+_shared = Path(os.environ.get("SCANCAL_PAGES", _folder.name))
 
 
 @functools.cache
 def calibration(scene: str) -> Path:
     """calibration.json of a scene; on "bad" nobody should rely: its U is larger than the searched box."""
-    out = folder() / scene
+    out = _shared / scene
+    if (out / "calibration.json").exists():
+        return out / "calibration.json"
     if scene == "sample":
         _run("refine", SOURCE / "data/sample", f"--out={out}", "--montecarlo=200")
     elif scene == "robot":
@@ -54,7 +62,9 @@ def calibration(scene: str) -> Path:
 @functools.cache
 def page(scene: str, language: str = "en") -> Path:
     """Of PRINTED the English one also as a PDF beside it."""
-    file = folder() / f"{scene}_{language}.html"
+    file = _shared / f"{scene}_{language}.html"
+    if file.exists():
+        return file
     pdf_too = [f"--pdf={file.with_suffix('.pdf')}"] if language == "en" and scene in PRINTED else []
     report(calibration(scene), f"--out={file}", f"--language={language}", *pdf_too, PYTHONHASHSEED="1", TZ="UTC")
     return file
@@ -142,3 +152,17 @@ def _rename(file: Path, out: Path) -> None:
 
 def _long(number: int) -> str:
     return f"{number} {LONG}"[:300]
+
+
+def make_all() -> None:
+    shutil.rmtree(_shared, ignore_errors=True)
+    _shared.mkdir(parents=True)
+    wanted = [(scene, language) for scene in SCENES for language in LANGUAGES.get(scene, ["en", "de"])]
+    for scene in SCENES:  # one is made of another
+        calibration(scene)
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(lambda each: page(*each), wanted))
+
+
+if __name__ == "__main__":
+    make_all()
