@@ -103,10 +103,7 @@ class Copy:
             self.missing.append(name)
             return
         where = self.root / path
-        where.parent.mkdir(parents=True, exist_ok=True)
-        if not where.is_dir():
-            where.symlink_to(DATA_SETS / name)
-            return
+        where.mkdir(parents=True, exist_ok=True)
         for file in (DATA_SETS / name).iterdir():
             if not (where / file.name).exists():
                 (where / file.name).symlink_to(file)
