@@ -1,4 +1,5 @@
 """Every command and every data set in the documents, run in a copy of the project as they say."""
+import json
 import os
 import re
 import shlex
@@ -103,10 +104,7 @@ class Copy:
             self.missing.append(name)
             return
         where = self.root / path
-        where.parent.mkdir(parents=True, exist_ok=True)
-        if not where.is_dir():
-            where.symlink_to(DATA_SETS / name)
-            return
+        where.mkdir(parents=True, exist_ok=True)
         for file in (DATA_SETS / name).iterdir():
             if not (where / file.name).exists():
                 (where / file.name).symlink_to(file)
@@ -179,6 +177,15 @@ class Commands(unittest.TestCase):
         text = (SOURCE / "docs" / "program.md").read_text(encoding="utf-8")
         for command in self._commands():
             self.assertIn(f"`scancal {command}", text)
+
+    def test_every_key_of_a_result_is_described(self):
+        text = (SOURCE / "docs" / "data.md").read_text(encoding="utf-8").partition("## 8 ")[2]
+        with tempfile.TemporaryDirectory(prefix="scancal_docs_") as folder:
+            for data_set in ("sample", "robot-sample"):
+                run([PROGRAM, "refine", str(SOURCE / "data" / data_set), f"--out={folder}"])
+                for key in json.loads((Path(folder) / "calibration.json").read_text(encoding="utf-8")):
+                    with self.subTest(data_set=data_set, key=key):
+                        self.assertIn(f"`{key}`", text)
 
     @staticmethod
     def _commands() -> list[str]:

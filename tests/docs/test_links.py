@@ -45,6 +45,19 @@ class Links(unittest.TestCase):
                 with self.subTest(document=document.name, path=path, section=section):
                     self.assertRegex((document.parent / path).read_text(encoding="utf-8"), rf"(?m)^## {section} ")
 
+    def test_what_the_code_cites(self):
+        for room in ROOMS:
+            for file in (SOURCE / room).rglob("*"):
+                if file.suffix not in (".h", ".cc", ".py") or file.parent.name == "docs":
+                    continue
+                text = re.sub(r"\n\s*(//|#)?\s*", " ", file.read_text(encoding="utf-8"))
+                for page, section in re.findall(r"\bdocs/(\w+\.md)(?:,? sections? (\d))?", text):
+                    with self.subTest(file=str(file.relative_to(SOURCE)), page=page, section=section):
+                        self.assertTrue((SOURCE / "docs" / page).exists())
+                        if section:
+                            self.assertRegex((SOURCE / "docs" / page).read_text(encoding="utf-8"),
+                                             rf"(?m)^## {section} ")
+
     def test_one_finds_every_page_from_the_first(self):
         for page in (SOURCE / "docs").glob("*.md"):
             self.assertIn(f"docs/{page.name}", links(README.read_text(encoding="utf-8")))
