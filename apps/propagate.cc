@@ -33,7 +33,7 @@ Result<bool> Propagated(const std::string& file) {
   SCANCAL_ASSIGN_OR_RETURN(const Calibration calibration, CalibrationFromJson(json, file));
   SCANCAL_ASSIGN_OR_RETURN(const ScannerKind* kind, FindScannerKind(calibration.model, file + ": model"));
   SCANCAL_ASSIGN_OR_RETURN(const Propagation propagation,
-                           kind->propagate(calibration, {TypedPoints(), FLAGS_points_file, units}, FLAGS_distance));
+                           kind->Propagate(calibration, {TypedPoints(), FLAGS_points_file, units}, FLAGS_distance));
   if (!FLAGS_out.empty()) SCANCAL_RETURN_IF_ERROR(WriteFile(FLAGS_out, ToCsv(propagation)));
   std::printf("%s", ToText(propagation).c_str());
   for (const std::string& warning : propagation.warnings)

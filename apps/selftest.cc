@@ -12,16 +12,16 @@ namespace {
 
 int Run(const std::vector<std::string>& arguments) {
   if (!arguments.empty()) return Complain("selftest takes no argument; the folder of NIST's files is given by --nist");
-  Selftest selftest{OwnCases()};
+  Selftest result{selftest::OwnCases()};
   if (FLAGS_nist.empty()) {
     std::printf("NIST's 27 certified regressions are not run; --nist=FOLDER, with their files, adds them\n\n");
   } else {
-    const Result<std::vector<SelftestRow>> nist = NistCases(FLAGS_nist);
+    const Result<std::vector<SelftestRow>> nist = selftest::NistCases(FLAGS_nist);
     if (!nist.ok()) return Complain(nist.error().message);
-    selftest.rows.insert(selftest.rows.end(), nist->begin(), nist->end());
+    result.rows.insert(result.rows.end(), nist->begin(), nist->end());
   }
-  std::printf("%s", ToText(selftest).c_str());
-  return selftest.ok() ? kTrusted : kUnreliable;
+  std::printf("%s", ToText(result).c_str());
+  return result.ok() ? kTrusted : kUnreliable;
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include <gflags/gflags.h>
 #include <cstdio>
 #include "apps/simulate.h"
-#include "models/robot_ball/write_simulated.h"
+#include "models/robot_ball/simulate.h"
 
 DECLARE_string(out);
 DECLARE_bool(declare);
@@ -20,11 +20,11 @@ namespace scancal {
 namespace {
 
 int Run() {
-  RobotScene scene;
+  robot_ball::Scene scene;
   if (FLAGS_configuration == "planar") {
-    scene.configuration = PoseConfiguration::kPlanar;
+    scene.configuration = robot_ball::PoseConfiguration::kPlanar;
   } else if (FLAGS_configuration == "collinear") {
-    scene.configuration = PoseConfiguration::kCollinear;
+    scene.configuration = robot_ball::PoseConfiguration::kCollinear;
   } else if (FLAGS_configuration != "spatial") {
     return Complain("--configuration: found \"" + FLAGS_configuration + "\", expected spatial, planar or collinear");
   }
@@ -36,7 +36,7 @@ int Run() {
   scene.u_spheres = FLAGS_u_artifact;
   scene.check_positions = FLAGS_check_positions;
   scene.seed = scene.noise_seed = FLAGS_seed;
-  const Result<void> written = WriteSimulatedRobot(scene, FLAGS_declare, FLAGS_out);
+  const Result<void> written = WriteSimulated(scene, FLAGS_declare, FLAGS_out);
   if (!written.ok()) return Complain(written.error().message);
   std::printf("wrote %s: %d stations x %d poses and %d that only translate, seed %llu; truth.json holds the truth\n",
               FLAGS_out.c_str(), scene.stations, scene.poses, scene.translations,

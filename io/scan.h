@@ -19,7 +19,8 @@ namespace scancal {
 struct ScanColumn {
   std::string name;  // "angle", "y"
   Dimension dimension = Dimension::kNone;
-  bool required = true;  // optional ones are absent from the batch if the file has none
+  bool required = true;     // optional ones are absent from the batch if the file has none
+  std::string remedy = {};  // behind the complaint that a required one is missing: "; ..."
 };
 
 struct WideLayout {            // one profile per line

@@ -60,7 +60,7 @@ class TableReader {
     ScanFormat format;
     format.units = units_;
     for (const TableColumn& column : wanted_)
-      format.columns.push_back({column.name, column.dimension, column.required});
+      format.columns.push_back({column.name, column.dimension, column.required, column.remedy});
     const auto chosen = ChooseColumns(format, header_, nameless_ ? table_.name_ : Place());
     if (!chosen.ok()) return Error{chosen.error().message + WrongSeparator(line_)};
     columns_.resize(header_.size());

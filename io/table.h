@@ -17,6 +17,7 @@ struct TableColumn {
   Cells cells = Cells::kText;
   Dimension dimension = Dimension::kNone;
   bool required = true;
+  std::string remedy = {};  // behind the complaint that a required one is missing: "; ..."
 };
 
 // A CSV file with a header, as a whole: quotes, blanks, a byte order mark, CRLF, lines that are empty or begin with #

@@ -1,8 +1,8 @@
 #include "models/flange_ball.h"
 
-namespace scancal {
+namespace scancal::flange_ball {
 
-FlangeBall::FlangeBall(std::vector<Link> links) : links_(std::move(links)) {
+Model::Model(std::vector<Link> links) : links_(std::move(links)) {
   using enum Scope;
   const auto declare = [&](const std::string& name, const std::vector<const char*>& components, Unit unit, Scope scope,
                            Role role, const char* source = "") {
@@ -20,10 +20,10 @@ FlangeBall::FlangeBall(std::vector<Link> links) : links_(std::move(links)) {
     declare("joint_", {std::to_string(k).c_str()}, Unit::kRad, kView, Role::kHold, "joints");
 }
 
-void FlangeBall::SetDirection(const Eigen::Vector3d& direction, Target* target) {
+void Model::SetDirection(const Eigen::Vector3d& direction, Target* target) {
   target->direction = direction.normalized();
   target->across[0] = target->direction.unitOrthogonal();
   target->across[1] = target->direction.cross(target->across[0]);
 }
 
-}  // namespace scancal
+}  // namespace scancal::flange_ball

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <string>
 #include <vector>
-#include "models/parts/chain.h"
+#include "models/chain/chain.h"
 #include "solver/model.h"
 
-namespace scancal {
+namespace scancal::flange_ball {
 
 // The ball rests in socket s (0 or 1) of a tool that lies somewhere in the base:
 //
@@ -24,7 +24,7 @@ namespace scancal {
 // ball fits best into one of no size.
 //
 // Noise: seat moves the ball, joint_1 .. joint_n the joints of one pose. Lengths mm, angles rad.
-class FlangeBall {
+class Model {
  public:
   // Each the first of as many as its name has components; links: kLinkNumbers a link, behind them joint_1 .. joint_n.
   enum Index { kBall = 0, kSpacing = 3, kSocket = 4, kDirection = 7, kSeat = 9, kLinks = 12 };
@@ -43,7 +43,7 @@ class FlangeBall {
   };
 
   // Links as SetDefaultLinkRoles says; seat estimated, joints held.
-  explicit FlangeBall(std::vector<Link> links);
+  explicit Model(std::vector<Link> links);
   const Quantities& quantities() const { return quantities_; }
   Quantity& quantity(int k) { return quantities_[k]; }
   const std::vector<Link>& links() const { return links_; }
@@ -61,7 +61,7 @@ class FlangeBall {
 };
 
 template <class T>
-void FlangeBall::Residual(const Target& tool, const View& pose, const Seen<T>& q, T* r) const {
+void Model::Residual(const Target& tool, const View& pose, const Seen<T>& q, T* r) const {
   using std::cos, std::sin;
   std::vector<T> errors(q.q + kLinks, q.q + FirstOfJoints());
   for (size_t k = 0; k < links_.size(); ++k) errors[kLinkNumbers * k] += q[FirstOfJoints() + static_cast<int>(k)];
@@ -85,4 +85,4 @@ void FlangeBall::Residual(const Target& tool, const View& pose, const Seen<T>& q
   r[2] = size * apart[2] - q(0, kSeat + 2);
 }
 
-}  // namespace scancal
+}  // namespace scancal::flange_ball

@@ -1,12 +1,12 @@
 #include "models/models.h"
-#include "models/flange_ball/flange_ball_scanner.h"
-#include "models/robot_ball/robot_scanner.h"
+#include "models/flange_ball/scanner.h"
+#include "models/robot_ball/scanner.h"
 #include "models/turntable/turntable_scanner.h"
 
 namespace scancal {
 namespace {
 
-constexpr ScannerKind kKinds[] = {kTurntable, kRobotBall, kFlangeBall};
+constexpr ScannerKind kKinds[] = {kTurntable, robot_ball::kKind, flange_ball::kKind};
 
 }  // namespace
 

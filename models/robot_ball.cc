@@ -1,14 +1,14 @@
 #include "models/robot_ball.h"
 #include <Eigen/QR>
 
-namespace scancal {
+namespace scancal::robot_ball {
 namespace {
 
 constexpr const char* kAxes[] = {"x", "y", "z", "rx", "ry", "rz"};
 
 }  // namespace
 
-RobotBall::RobotBall(std::vector<Link> links, std::vector<Sphere> spheres)
+Model::Model(std::vector<Link> links, std::vector<Sphere> spheres)
     : links_(std::move(links)), spheres_(std::move(spheres)) {
   using enum Scope;
   const auto declare = [&](const std::string& name, int count, Scope scope, Role role, const char* source = "") {
@@ -26,7 +26,7 @@ RobotBall::RobotBall(std::vector<Link> links, std::vector<Sphere> spheres)
   for (const Sphere& sphere : spheres_) declare("sphere_" + sphere.name, 3, kSystem, Role::kHold, "artifact");
 }
 
-std::vector<StandIns<RobotBall::View>> RobotBall::MakeNodes(const Target& station) const {
+std::vector<StandIns<Model::View>> Model::MakeNodes(const Target& station) const {
   constexpr double kRankTolerance = 1e-9;
   std::vector<StandIns<View>> result;
   for (const View& pose : station.views) {
@@ -42,7 +42,7 @@ std::vector<StandIns<RobotBall::View>> RobotBall::MakeNodes(const Target& statio
   return result;
 }
 
-Eigen::MatrixXd RobotBall::Interpolate(const std::vector<View>& nodes, const View& pose) const {
+Eigen::MatrixXd Model::Interpolate(const std::vector<View>& nodes, const View& pose) const {
   const Eigen::MatrixXd by_feature = Features(nodes.front().balls).colPivHouseholderQr().solve(Features(pose.balls));
   const Eigen::Index balls = by_feature.cols(), columns = 3 * by_feature.rows();
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * balls, columns + 1);
@@ -54,7 +54,7 @@ Eigen::MatrixXd RobotBall::Interpolate(const std::vector<View>& nodes, const Vie
   return result;
 }
 
-Eigen::MatrixXd RobotBall::Features(const std::vector<SeenBall>& balls) const {
+Eigen::MatrixXd Model::Features(const std::vector<SeenBall>& balls) const {
   Eigen::MatrixXd features(4, std::ssize(balls));
   for (Eigen::Index b = 0; b < features.cols(); ++b) features.col(b) << spheres_[balls[b].sphere].centre, length_;
   return features;
@@ -77,4 +77,4 @@ Eigen::Matrix<double, 6, 1> NumbersOf(const Eigen::Isometry3d& pose) {
   return numbers;
 }
 
-}  // namespace scancal
+}  // namespace scancal::robot_ball

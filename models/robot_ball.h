@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <string>
 #include <vector>
-#include "models/parts/chain.h"
+#include "models/chain/chain.h"
 #include "solver/model.h"
 
-namespace scancal {
+namespace scancal::robot_ball {
 
 // A ball centre c seen in the scanner's frame lies in the base at (eq. 1)
 //
@@ -23,8 +23,9 @@ namespace scancal {
 // _rz, one a station, are increments on Target::base_from_artifact, the turn about the artifact's origin.
 //
 // What may be wrong besides, each nominally zero: repeatability moves all balls of a pose alike, ball moves one of them
-// by View::spread times itself, sphere_NAME_x, _y, _z is the error of a centre on the artifact. Lengths mm, angles rad.
-class RobotBall {
+// by SeenBall::spread times itself, sphere_NAME_x, _y, _z is the error of a centre on the artifact. Lengths mm, angles
+// rad.
+class Model {
  public:
   // Each the first of three or six, x y z rx ry rz; links: the first of kLinkNumbers a link.
   enum Index { kHandEye = 0, kArtifact = 6, kRepeatability = 12, kBall = 15, kLinks = 18 };
@@ -52,7 +53,7 @@ class RobotBall {
   };
 
   // Hand-eye estimated from zero; links as SetDefaultLinkRoles says; noise estimated; spheres held.
-  RobotBall(std::vector<Link> links, std::vector<Sphere> spheres);
+  Model(std::vector<Link> links, std::vector<Sphere> spheres);
   const Quantities& quantities() const { return quantities_; }
   Quantity& quantity(int k) { return quantities_[k]; }
   const std::vector<Link>& links() const { return links_; }
@@ -77,12 +78,38 @@ class RobotBall {
   Quantities quantities_;
 };
 
+using Station = Model::Target;
+
+// The distance of two balls, known from a CMM, seen in some pose each: not used in the calibration (`check:`).
+struct CheckLength {
+  std::string name;                     // of the pair, for tables
+  Model::View first_pose, second_pose;  // one ball each: balls[0]; may be the same pose
+  double distance = 0, u = 0;           // mm
+};
+
+// What a data set holds once it is read: mm, rad, no files.
+struct Measurements {
+  std::vector<Link> links;  // none: the poses of the flange are given
+  std::vector<Model::Sphere> spheres;
+  double u_spheres = 0;           // standard uncertainty of each coordinate of their centres, mm
+  double ball_diameter = 0;       // mm; 0: not declared
+  std::vector<Station> stations;  // base_from_artifact not set
+  std::vector<CheckLength> check;
+  double usual_ball_noise = 0;  // mm: what Model::SeenBall::spread is relative to; 0: nothing was declared
+};
+
+// What a method finds.
+struct Setup {
+  Eigen::Isometry3d flange_from_scanner = Eigen::Isometry3d::Identity();
+  std::vector<Link> link_errors;  // added to the nominal; one a link
+};
+
 // flange_from_scanner of hand_eye_x .. _rz, and back; the rotation vector is at most pi long.
 Eigen::Isometry3d PoseOf(const Eigen::Matrix<double, 6, 1>& numbers);
 Eigen::Matrix<double, 6, 1> NumbersOf(const Eigen::Isometry3d& pose);
 
 template <class T>
-void RobotBall::Residual(const Target& station, const View& pose, const Seen<T>& q, T* r) const {
+void Model::Residual(const Target& station, const View& pose, const Seen<T>& q, T* r) const {
   ChainFrame<T> flange = MakeChainFrame<T>(pose.base_from_flange);
   MoveAlong(links_, pose.joints.data(), q.q + kLinks, &flange);
   T hand[9], turn[9];  // columns of the rotations
@@ -122,4 +149,4 @@ void RobotBall::Residual(const Target& station, const View& pose, const Seen<T>&
   }
 }
 
-}  // namespace scancal
+}  // namespace scancal::robot_ball

@@ -1,8 +1,9 @@
-// What the program asks of a scanner: the half of a model that knows tables and files.
+// What the program asks of a scanner, the half of a model that knows tables and files; and what all scanners do alike.
 #pragma once
+#include <chrono>
 #include <filesystem>
-#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 #include "io/dataset.h"
@@ -42,10 +43,10 @@ class Scanner {
   // The published search, then the joint refinement. An Error names a quantity that the data do not determine; doubts
   // about a computed result are fields of the Calibration.
   virtual Result<Calibration> Calibrate(const RefineChoice& choice) const = 0;
-  // The published method and ours on the same data, one row each; the last row is the reference.
-  virtual Result<Comparison> Compare(const CompareChoice& choice) const = 0;
-  // The search's objective over its box, one line a node.
-  virtual Result<void> WriteSurface(const std::filesystem::path& file) const = 0;
+  // Optional: the published method and ours on the same data, one row each; the last row is the reference.
+  virtual Result<Comparison> Compare(const CompareChoice& choice) const;
+  // Optional: the search's objective over its box, one line a node.
+  virtual Result<void> WriteSurface(const std::filesystem::path& file) const;
 };
 
 // One kind of scanner; models.h lists them.
@@ -57,9 +58,64 @@ struct ScannerKind {
   // All points of the data set's scans in the frame of the calibration, which is of this model, streamed; returns their
   // number.
   Result<int64_t> (*transform)(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
-  // Points as the scanner shows them, in the frame of the calibration with their uncertainty; distances: of each from
-  // the one before.
-  Result<Propagation> (*propagate)(const Calibration& calibration, const PointRequest& points, bool distances);
+  // Optional: points as the scanner shows them, in the frame of the calibration with their uncertainty; distances: of
+  // each from the one before.
+  Result<Propagation> (*propagate)(const Calibration& calibration, const PointRequest& points,
+                                   bool distances) = nullptr;
+
+  // An Error where there is none.
+  Result<Propagation> Propagate(const Calibration& calibration, const PointRequest& points, bool distances) const;
 };
+
+// "data/dataset.yaml: " and the sentence.
+Error InFile(const Dataset& dataset, const std::string& sentence);
+
+// One declared unit of such a quantity in mm, rad or 1.
+double UnitFactor(Unit unit, const Units& units);
+
+// What `parameters:` says of one quantity: sets role, value and u of the one that is named; returns its index.
+// quantities: those of system scope are the parameters, and the first so many have no nominal value: what holds or
+// considers one of them gives it. others: names that may stand there besides, for a suggestion. Error: an unknown name;
+// no value where one must be.
+Result<int> SetDeclared(const ParameterSetting& setting, const Dataset& dataset, std::vector<std::string> others,
+                        int without_nominal, std::span<Quantity> quantities);
+
+// How Describe begins: "NAME: KIND, lengths in mm, angles in deg". NAME: the data set's, or its folder's.
+std::string Opening(const Dataset& dataset, const std::string& kind);
+
+// For a model with one residual, which "depth", the program's default, means as well; what: it is, for the Error.
+Result<void> CheckOnlyResidual(const RefineChoice& choice, const std::string& what);
+// An Error where Monte Carlo is asked of a fit with equal weights.
+Result<void> CheckMonteCarlo(const RefineChoice& choice, bool weighted);
+
+// What a model says of data that leave a quantity open.
+struct UndeterminedWords {
+  const char* target;     // what it calls one: "station"
+  const char* of_target;  // "its plane is not determined; it needs profiles at two angles or more"
+  const char* by;         // "these placements"
+};
+// An Error that names targets whose own quantities are not determined, or else quantities of the system.
+Result<void> CheckDetermined(const Observability& seen, const UndeterminedWords& words);
+
+class Stopwatch {  // runs from its construction on
+ public:
+  double Seconds() const;
+
+ private:
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+};
+
+// What a model has computed once it comes to the end of Calibrate.
+struct Refined {
+  const Solution& solution;
+  std::string residual;                    // a name of it
+  double seconds = 0;                      // of the refinement
+  PureError pure_error = {};               // what repeats within a view
+  std::vector<std::string> warnings = {};  // of the declaration and of what was read: they come first
+};
+
+// What every scanner does then: Summarize, bootstrap and Monte Carlo with a progress bar, names. The model adds what
+// only it can say.
+Calibration Conclude(const Dataset& dataset, const Refined& refined, const MonteCarloChoice& monte_carlo);
 
 }  // namespace scancal

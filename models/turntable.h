@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 #include "models/parts/pseudo_points.h"
-#include "models/parts/rotation.h"
+#include "models/rotation.h"
 #include "models/turntable/form_modes.h"
 #include "solver/model.h"
 

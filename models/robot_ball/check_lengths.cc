@@ -1,11 +1,11 @@
-#include "models/robot_ball/check_lengths.h"
+// The lengths that a calibration is checked with.
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include "io/message.h"
-#include "models/robot_ball/stations.h"
+#include "models/robot_ball/tables.h"
 
-namespace scancal {
+namespace scancal::robot_ball {
 namespace {
 
 constexpr double kMostOff = 0.4;  // logarithm of half as much again
@@ -51,16 +51,16 @@ Result<Pairs> ReadPairs(const std::filesystem::path& path, const Units& units) {
 }
 
 // The pose as if it had seen that ball alone; no balls: it did not see it.
-RobotBall::View Only(const RobotBall::View& view, int ball) {
-  RobotBall::View only = view;
-  std::erase_if(only.balls, [&](const RobotBall::SeenBall& seen) { return seen.sphere != ball; });
+Model::View Only(const Model::View& view, int ball) {
+  Model::View only = view;
+  std::erase_if(only.balls, [&](const Model::SeenBall& seen) { return seen.sphere != ball; });
   return only;
 }
 
 // Of poses of one station; false: it did not see both balls.
 bool FindPoses(const Station& station, const Pair& pair, CheckLength* length) {
   const auto saw = [](int ball) {
-    return [ball](const RobotBall::View& view) {
+    return [ball](const Model::View& view) {
       return std::any_of(view.balls.begin(), view.balls.end(), [&](const auto& seen) { return seen.sphere == ball; });
     };
   };
@@ -77,8 +77,8 @@ bool FindPoses(const Station& station, const Pair& pair, CheckLength* length) {
 
 // The distance in the frame of the scanner, where one pose saw both balls, over the true one; 1 where none did.
 double RatioWithinAPose(const Station& station, const Pair& pair) {
-  for (const RobotBall::View& view : station.views) {
-    const RobotBall::View a = Only(view, pair.a), b = Only(view, pair.b);
+  for (const Model::View& view : station.views) {
+    const Model::View a = Only(view, pair.a), b = Only(view, pair.b);
     if (!a.balls.empty() && !b.balls.empty()) return (a.balls[0].centre - b.balls[0].centre).norm() / pair.distance;
   }
   return 1;
@@ -90,7 +90,7 @@ Result<CheckLengths> ReadCheck(const CheckFiles& paths, const std::filesystem::p
                                const std::vector<Link>& links, const Units& units, double ball_diameter) {
   CheckLengths result;
   SCANCAL_ASSIGN_OR_RETURN(const Pairs pairs, ReadPairs(paths.distances, units));
-  SCANCAL_ASSIGN_OR_RETURN(PoseTable poses, ReadPoses(paths.poses, links, units));
+  SCANCAL_ASSIGN_OR_RETURN(Poses poses, ReadPoses(paths.poses, links, units));
   SCANCAL_ASSIGN_OR_RETURN(Observations observations,
                            ReadObservations(paths.observations, folder, units, ball_diameter));
   SCANCAL_RETURN_IF_ERROR(AttachBalls(observations, pairs.balls, pairs.table.name(), 0, &poses));
@@ -126,4 +126,4 @@ Result<CheckLengths> ReadCheck(const CheckFiles& paths, const std::filesystem::p
   return result;
 }
 
-}  // namespace scancal
+}  // namespace scancal::robot_ball

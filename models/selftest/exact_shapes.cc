@@ -1,99 +1,89 @@
-#include "models/selftest/exact_shapes.h"
-#include <Eigen/Geometry>
-#include "models/parts/rotation.h"
-#include "models/parts/sphere.h"
-#include "models/selftest/known.h"
-#include "models/selftest/regression.h"
-#include "models/selftest/sensitivity.h"
-#include "solver/uncertainty/law_of_propagation.h"
+// Printed by scripts/selftest_digits; not to be edited.
+#include "models/selftest/selftest.h"
 
-namespace scancal {
-namespace {
+namespace scancal::selftest {
 
-constexpr double kValues = 10, kDeviations = 8;  // digits required
-
-// r = n . p - d, in the coordinates as they are: a lever arm of 60 m, where centring would hide what it costs.
-class Plane {
- public:
-  enum { kTurn1, kTurn2, kDistance };
-  static constexpr int kRowsPerPoint = 1;
-  using View = Eigen::Vector3d;
-  struct Target {
-    std::string name;
-    std::vector<View> views;
+std::vector<ExactShape> ExactShapes() {
+  return {
+      {"plane, steep, far from the origin",
+       ExactShape::kPlane,
+       0,
+       {{48250.724, -31680.004, 1180.001},
+        {48248.937, -31784.235, 1220.524},
+        {48250.635, -31734.757, 1144.143},
+        {48249.601, -31703.492, 1227.613},
+        {48249.396, -31799.078, 1173.724},
+        {48251.074, -31689.378, 1147.810},
+        {48249.221, -31755.581, 1214.758},
+        {48250.476, -31767.648, 1126.752},
+        {48250.432, -31683.648, 1192.358},
+        {48249.030, -31795.461, 1202.872},
+        {48250.829, -31714.557, 1147.404},
+        {48249.236, -31722.057, 1237.249}},
+       {"0.9998091766525461713747296058251910793719", "-0.01127732651935752287019836577046228961215",
+        "0.01595093062907363108457845967844532931487", "48617.54943684015022203139188037310943766"},
+       {"0.000007347826412766971487296034618460546262637", "0.0003451247061035599211165924162094480427927",
+        "0.0004071609055452165706420320365969549599176", "10.75509928043713242890311769662176073108"}},
+      {"plane, noise 0.5 um",
+       ExactShape::kPlane,
+       0,
+       {{31.93075, 428.54205, -29.99971},
+        {181.81868, 381.49283, 28.87098},
+        {115.05762, 424.74948, -82.09333},
+        {62.75316, 403.84852, 39.17339},
+        {207.20465, 394.04055, -39.11613},
+        {48.16303, 437.42968, -76.76603},
+        {140.20300, 392.45757, 20.49800},
+        {164.67548, 420.95145, -107.35740},
+        {36.33082, 422.88948, -12.04684},
+        {199.65488, 384.48580, 3.22838},
+        {85.15499, 429.79771, -77.35633},
+        {89.26387, 394.58320, 53.17219}},
+       {"0.1995028315087993984365435724104868000247", "0.9476337455072526185598559161363319753210",
+        "0.2493770330160080630025807649151846359675", "404.9887633414519782646632308704920936566"},
+       {"0.000002519264519117097702887389191274217513585", "0.0000008771466141868164024304666498898728688820",
+        "0.000002923956270405362174975934269406290645416", "0.0004290219439139154451392731305361962949950"}},
+      {"sphere, small cap",
+       ExactShape::kSphere,
+       0,
+       {{311.209, -125.000, 1420.017},
+        {308.455, -123.585, 1420.042},
+        {310.236, -127.691, 1420.101},
+        {311.945, -122.462, 1420.118},
+        {306.432, -125.632, 1420.167},
+        {313.379, -127.149, 1420.204},
+        {308.869, -120.795, 1420.219},
+        {307.847, -129.148, 1420.272},
+        {314.672, -123.292, 1420.311},
+        {305.139, -122.995, 1420.340},
+        {312.344, -130.005, 1420.372},
+        {311.728, -119.484, 1420.420},
+        {304.788, -128.023, 1420.450},
+        {316.112, -126.341, 1420.502}},
+       {"309.9636345697156060156819562465391796801", "-124.9672704796841498392111378692729879313",
+        "1459.953672032874304602334825457501979958", "39.95746552339353046696581687079972898910"},
+       {"0.02677357746395770441459357928203456577675", "0.02937603362385200435345802234832034598397",
+        "0.6061754302275287766946904263682451813472", "0.6023236837668987886880643435829045119898"}},
+      {"sphere, known radius",
+       ExactShape::kSphere,
+       6.35,
+       {{-50.840, 18.000, 633.756},
+        {-53.467, 19.344, 633.960},
+        {-51.778, 15.478, 634.187},
+        {-50.193, 20.357, 634.379},
+        {-55.284, 17.419, 634.574},
+        {-48.929, 16.048, 634.786},
+        {-53.020, 21.790, 634.968},
+        {-53.905, 14.330, 635.204},
+        {-47.901, 19.498, 635.385},
+        {-56.205, 19.734, 635.589},
+        {-49.996, 13.721, 635.781},
+        {-50.537, 22.672, 635.962}},
+       {"-52.00046849015033526117996796867912614783", "18.01632711722168079543261581490399635145",
+        "639.9978699997976518011797281951050131080"},
+       {"0.01048131924356915664878516584909379839447", "0.009340723836989510424847230929493831328718",
+        "0.004988216572211857836266848121764069363138"}},
   };
-  explicit Plane(const Eigen::Vector3d& through_a, const Eigen::Vector3d& b, const Eigen::Vector3d& c)
-      : normal_((b - through_a).cross(c - through_a).normalized()),
-        e1_(normal_.unitOrthogonal()),
-        e2_(normal_.cross(e1_)),
-        quantities_{{"turn_1", Unit::kRad, Scope::kSystem, Role::kEstimate, 0, 0, false, ""},
-                    {"turn_2", Unit::kRad, Scope::kSystem, Role::kEstimate, 0, 0, false, ""},
-                    {"distance", Unit::kMm, Scope::kSystem, Role::kEstimate, normal_.dot(through_a), 0, false, ""}} {}
-  const Quantities& quantities() const { return quantities_; }
-  int Points(const View&) const { return 1; }
-  double Count(const View&) const { return 1; }
-  template <class T>
-  void Normal(const T* q, T n[3]) const {
-    T turn[3];
-    for (int k = 0; k < 3; ++k) turn[k] = q[kTurn1] * e1_[k] + q[kTurn2] * e2_[k];
-    Rotate(turn, normal_, n);
-  }
-  template <class T>
-  void Residual(const Target&, const View& p, const Seen<T>& q, T* r) const {
-    T n[3];
-    Normal(q.q, n);
-    r[0] = n[0] * p[0] + n[1] * p[1] + n[2] * p[2] - q[kDistance];
-  }
-
- private:
-  Eigen::Vector3d normal_, e1_, e2_;
-  Quantities quantities_;
-};
-
-// n, d and their covariance from the estimated turns and distance, d made positive.
-SelftestRow CheckPlane(const ExactShape& shape) {
-  const auto model = std::make_shared<Plane>(shape.points[0], shape.points[1], shape.points[2]);
-  const LeastSquares solved = SolveLeastSquares(MakeProblem<Plane>(model, {{"plane", shape.points}}));
-  const Eigen::Vector3d x = solved.fit.estimate.system;
-  const double sign = x[Plane::kDistance] < 0 ? -1 : 1;
-  const auto plane = Evaluate<4, 3>(
-      [&](const auto* q, auto* y) {
-        model->Normal(q, y);
-        y[3] = q[Plane::kDistance];
-      },
-      x);
-  const Eigen::Matrix4d covariance = PropagateCovariance(plane.sensitivity, solved.covariance.matrix);
-  return {shape.name,
-          "",
-          static_cast<int>(shape.points.size()),
-          3,
-          Compare(sign * plane.y, shape.values, kValues),
-          Compare(covariance.diagonal().cwiseSqrt(), shape.deviations, kDeviations),
-          solved.fit.iterations,
-          solved.fit.message};
 }
 
-SelftestRow CheckSphere(const ExactShape& shape) {
-  SphereChoice choice;
-  if (shape.known_radius > 0) choice.radius = KnownRadius{shape.known_radius};
-  const SphereFit fit = FitSphere(shape.points, choice);
-  const Eigen::Index n = std::ssize(shape.values);
-  Eigen::Vector4d values;
-  values << fit.centre, fit.radius;
-  return {shape.name,
-          "",
-          static_cast<int>(shape.points.size()),
-          static_cast<int>(n),
-          Compare(values.head(n), shape.values, kValues),
-          Compare(fit.covariance.diagonal().head(n).cwiseSqrt(), shape.deviations, kDeviations),
-          fit.iterations,
-          fit.doubt};
-}
-
-}  // namespace
-
-SelftestRow Check(const ExactShape& shape) {
-  return shape.kind == ExactShape::kPlane ? CheckPlane(shape) : CheckSphere(shape);
-}
-
-}  // namespace scancal
+}  // namespace scancal::selftest

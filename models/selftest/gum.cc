@@ -1,13 +1,12 @@
-#include "models/selftest/gum.h"
+// The worked examples of the GUM (JCGM 100:2008, Annex H).
 #include <cmath>
 #include <limits>
-#include "models/selftest/known.h"
-#include "models/selftest/regression.h"
-#include "models/selftest/sensitivity.h"
+#include "models/selftest/fit.h"
+#include "models/selftest/selftest.h"
 #include "solver/uncertainty/coverage.h"
 #include "solver/uncertainty/law_of_propagation.h"
 
-namespace scancal {
+namespace scancal::selftest {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -111,4 +110,4 @@ SelftestRow CheckThermometer() {
           .note = solved.fit.message};
 }
 
-}  // namespace scancal
+}  // namespace scancal::selftest

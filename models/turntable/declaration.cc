@@ -6,7 +6,7 @@
 #include <set>
 #include <span>
 #include "io/message.h"
-#include "models/parts/declared_parameter.h"
+#include "models/scanner.h"
 #include "models/turntable/influences.h"
 
 namespace scancal {

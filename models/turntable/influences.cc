@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <map>
 #include "io/message.h"
-#include "models/parts/declared_parameter.h"
+#include "models/scanner.h"
 
 namespace scancal {
 namespace {

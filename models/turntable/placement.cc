@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include "io/units.h"
-#include "models/parts/median.h"
+#include "models/median.h"
 #include "models/parts/robust_line.h"
 #include "models/turntable/raw_profiles.h"
 #include "models/turntable/robust_plane.h"

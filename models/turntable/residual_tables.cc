@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include "models/parts/figure_tables.h"
-#include "models/parts/median.h"
+#include "models/median.h"
+#include "models/tables.h"
 #include "models/turntable/smooth_columns.h"
 
 namespace scancal {

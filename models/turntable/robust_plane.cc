@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include "models/parts/median.h"
+#include "models/median.h"
 
 namespace scancal {
 namespace {

@@ -2,7 +2,7 @@
 #include <glog/logging.h>
 #include <algorithm>
 #include <cmath>
-#include "models/parts/figure_tables.h"
+#include "models/tables.h"
 #include "models/turntable/calibrated_turntable.h"
 
 namespace scancal {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include "io/output_file.h"
-#include "models/parts/figure_tables.h"
+#include "models/tables.h"
 #include "models/turntable/turntable_scanner.h"
 
 namespace scancal {

@@ -1,7 +1,7 @@
 // The joint fit of a turntable.
 #include <algorithm>
+#include "models/median.h"
 #include "models/parts/correlated_noise.h"
-#include "models/parts/median.h"
 #include "models/turntable/smooth_columns.h"
 #include "models/turntable/turntable_scanner.h"
 

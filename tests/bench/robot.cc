@@ -7,10 +7,11 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include "io/units.h"
-#include "models/robot_ball/hand_eye.h"
-#include "models/robot_ball/robot_fit.h"
+#include "models/robot_ball/fit.h"
 #include "models/robot_ball/simulate.h"
+#include "models/robot_ball/start.h"
 #include "solver/model.h"
 #include "solver/uncertainty/covariance.h"
 #include "solver/weigh.h"
@@ -23,8 +24,8 @@ using Json = nlohmann::json;
 
 constexpr double kWholeArtifact = 3000;  // mm: every pose sees all balls
 
-RobotScene Scene(int stations, int poses) {
-  RobotScene scene;
+robot_ball::Scene Scene(int stations, int poses) {
+  robot_ball::Scene scene;
   scene.stations = stations;
   scene.poses = poses;
   scene.translations = scene.check_positions = 0;
@@ -33,7 +34,7 @@ RobotScene Scene(int stations, int poses) {
 }
 
 // The noise as simulated.
-void DeclareNoise(const RobotScene& scene, RobotBall* model) {
+void DeclareNoise(const robot_ball::Scene& scene, robot_ball::Model* model) {
   for (int k = 0; k < std::ssize(model->quantities()); ++k) {
     Quantity& quantity = model->quantity(k);
     if (quantity.source != "ball" && quantity.source != "repeatability") continue;
@@ -43,12 +44,12 @@ void DeclareNoise(const RobotScene& scene, RobotBall* model) {
 }
 
 // All 25 link errors with the prior of a data sheet: what the data leave open is held by it.
-RobotBall WithPriors(const RobotData& data, const RobotScene& scene) {
-  RobotBall model(data.links, data.spheres);
+robot_ball::Model WithPriors(const robot_ball::Measurements& data, const robot_ball::Scene& scene) {
+  robot_ball::Model model(data.links, data.spheres);
   DeclareNoise(scene, &model);
   for (size_t link = 0; link < data.links.size(); ++link)
     for (int e = 0; e < kLinkNumbers; ++e) {
-      Quantity& quantity = model.quantity(RobotBall::kLinks + kLinkNumbers * static_cast<int>(link) + e);
+      Quantity& quantity = model.quantity(robot_ball::Model::kLinks + kLinkNumbers * static_cast<int>(link) + e);
       const bool beta = e == kLinkNumbers - 1;
       if (beta && !NextAxisIsParallel(data.links[link])) continue;
       if (beta && link + 1 == data.links.size()) continue;
@@ -59,10 +60,10 @@ RobotBall WithPriors(const RobotData& data, const RobotScene& scene) {
 }
 
 struct Joint {  // the fit of both sides
-  RobotData data;
-  RobotScene scene;
-  std::vector<Station> stations;
-  std::shared_ptr<const RobotBall> model;
+  robot_ball::Measurements data;
+  robot_ball::Scene scene;
+  std::vector<robot_ball::Station> stations;
+  std::shared_ptr<const robot_ball::Model> model;
   Problem problem;
   Estimate from;
 };
@@ -71,16 +72,16 @@ Joint MakeJoint() {
   Joint joint;
   joint.scene = Scene(8, 8);
   joint.scene.field = kWholeArtifact;
-  joint.data = SimulateRobot(joint.scene).data;
-  const Result<RobotSetup> start = InitialHandEye(joint.data);
+  joint.data = robot_ball::Simulate(joint.scene).data;
+  const Result<robot_ball::Setup> start = InitialHandEye(joint.data);
   CHECK(start.ok()) << start.error().message;
-  Result<std::vector<Station>> stations = StationsAt(joint.data, *start);
+  Result<std::vector<robot_ball::Station>> stations = StationsAt(joint.data, *start);
   CHECK(stations.ok()) << stations.error().message;
   joint.stations = *std::move(stations);
-  joint.model = std::make_shared<const RobotBall>(WithPriors(joint.data, joint.scene));
-  joint.problem = MakeProblem<RobotBall>(joint.model, joint.stations);
+  joint.model = std::make_shared<const robot_ball::Model>(WithPriors(joint.data, joint.scene));
+  joint.problem = MakeProblem<robot_ball::Model>(joint.model, joint.stations);
   joint.from = NominalStart(joint.problem);
-  joint.from.system.head<6>() = NumbersOf(start->flange_from_scanner);
+  joint.from.system.head<6>() = robot_ball::NumbersOf(start->flange_from_scanner);
   Weigh(&joint.problem, joint.from);
   return joint;
 }
@@ -101,22 +102,22 @@ void WriteForScipy(const Joint& joint, const std::filesystem::path& path) {
     start["links"].push_back({link.theta, link.d, link.a, link.alpha, link.beta});
   for (const int k : joint.problem.With({Scope::kSystem}, Role::kEstimate)) {
     start["x"].push_back(0);
-    if (k < RobotBall::kLinks) continue;
-    start["free"].push_back(k - RobotBall::kLinks);
+    if (k < robot_ball::Model::kLinks) continue;
+    start["free"].push_back(k - robot_ball::Model::kLinks);
     start["prior"].push_back(joint.problem.quantities[k].u);
   }
   for (Eigen::Index k = 0; k < joint.from.system.size(); ++k) start["x"][k] = joint.from.system[k];
-  for (const RobotBall::Sphere& sphere : joint.data.spheres)
+  for (const robot_ball::Model::Sphere& sphere : joint.data.spheres)
     start["spheres"].push_back({sphere.centre[0], sphere.centre[1], sphere.centre[2]});
   for (size_t s = 0; s < joint.stations.size(); ++s) {
     start["base_from_artifact"].push_back(Rows(joint.stations[s].base_from_artifact.matrix()));
     for (int k = 0; k < 6; ++k) start["x"].push_back(0);
-    for (const RobotBall::View& view : joint.stations[s].views) {
+    for (const robot_ball::Model::View& view : joint.stations[s].views) {
       start["station"].push_back(s);
       start["joints"].push_back(view.joints);
       CHECK_EQ(view.balls.size(), joint.data.spheres.size());
       Json balls = Json::array();
-      for (const RobotBall::SeenBall& ball : view.balls)
+      for (const robot_ball::Model::SeenBall& ball : view.balls)
         balls.push_back({ball.centre[0], ball.centre[1], ball.centre[2]});
       start["balls"].push_back(balls);
     }
@@ -141,8 +142,8 @@ void CompareWithScipy(const std::filesystem::path& script, const std::filesystem
   const double refine_s = MedianSecondsOf([&] { fit = Refine(joint.problem, joint.from); });
   CHECK(fit.converged) << fit.message;
   const auto whole = [&] {
-    const Result<RobotSetup> start = InitialHandEye(joint.data);
-    CHECK(start.ok() && FitRobot(joint.data, *joint.model, start->flange_from_scanner).ok());
+    const Result<robot_ball::Setup> start = InitialHandEye(joint.data);
+    CHECK(start.ok() && robot_ball::FitJointly(joint.data, *joint.model, start->flange_from_scanner).ok());
   };
   const double whole_s = MedianSecondsOf(whole);
   if (script.empty()) return;
@@ -171,25 +172,25 @@ void CompareWithScipy(const std::filesystem::path& script, const std::filesystem
 }
 
 // The whole fit; seconds.
-double FitSeconds(const RobotData& data, const RobotScene& scene) {
-  RobotBall model(data.links, data.spheres);
+double FitSeconds(const robot_ball::Measurements& data, const robot_ball::Scene& scene) {
+  robot_ball::Model model(data.links, data.spheres);
   DeclareNoise(scene, &model);
   return SecondsOf([&] {
-    const Result<RobotSetup> start = InitialHandEye(data);
+    const Result<robot_ball::Setup> start = InitialHandEye(data);
     CHECK(start.ok()) << start.error().message;
-    const Result<RobotFit> fit = FitRobot(data, model, start->flange_from_scanner);
+    const Result<robot_ball::JointFit> fit = robot_ball::FitJointly(data, model, start->flange_from_scanner);
     CHECK(fit.ok()) << fit.error().message;
     CHECK(fit->solution.fit.converged) << fit->solution.fit.message;
   });
 }
 
-void ComparePoses(const std::string& what, const std::vector<RobotScene>& scenes, Table* table) {
+void ComparePoses(const std::string& what, const std::vector<robot_ball::Scene>& scenes, Table* table) {
   std::vector<double> seconds, megabytes;  // per pose
   double first_poses = 0, last_poses = 0;
-  for (const RobotScene& scene : scenes) {
+  for (const robot_ball::Scene& scene : scenes) {
     const int poses = scene.stations * scene.poses;
     Say(fmt::format("robot: {} poses", poses));
-    const RobotData data = SimulateRobot(scene).data;
+    const robot_ball::Measurements data = robot_ball::Simulate(scene).data;
     const ChildRun child = RunInChild([&] { return std::vector{FitSeconds(data, scene)}; });
     seconds.push_back(child.values.at(0) / poses);
     megabytes.push_back(child.peak_mb / poses);
@@ -213,7 +214,7 @@ void ComparePoses(const std::string& what, const std::vector<RobotScene>& scenes
 
 void CompareRobot(const std::filesystem::path& scipy_script, const std::filesystem::path& folder, Table* table) {
   CompareWithScipy(scipy_script, folder, table);
-  std::vector<RobotScene> more_stations, more_poses;
+  std::vector<robot_ball::Scene> more_stations, more_poses;
   for (const int count : {125, 1250, 12'500}) more_stations.push_back(Scene(count, 8));
   for (const int count : {125, 1250}) more_poses.push_back(Scene(8, count));
   ComparePoses("stations", more_stations, table);

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include "models/parts/median.h"
+#include "models/median.h"
 
 namespace scancal::coverage {
 namespace {

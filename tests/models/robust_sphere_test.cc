@@ -1,6 +1,6 @@
-#include "models/parts/robust_sphere.h"
 #include <gmock/gmock.h>
 #include <numbers>
+#include "models/sphere.h"
 #include "solver/random.h"
 
 namespace scancal {

@@ -1,12 +1,9 @@
 #include "models/selftest/selftest.h"
 #include <gmock/gmock.h>
 #include <cmath>
-#include "models/selftest/exact_shapes.h"
-#include "models/selftest/known.h"
-#include "models/selftest/nist.h"
 #include "tests/io/temporary_folder.h"
 
-namespace scancal {
+namespace scancal::selftest {
 namespace {
 
 using ::testing::AllOf;
@@ -173,4 +170,4 @@ TEST_F(NistFile, AKnownMisprintIsCorrectedAndTold) {
 }
 
 }  // namespace
-}  // namespace scancal
+}  // namespace scancal::selftest

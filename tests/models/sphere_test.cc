@@ -1,4 +1,4 @@
-#include "models/parts/sphere.h"
+#include "models/sphere.h"
 #include <gmock/gmock.h>
 #include <Eigen/Dense>
 #include <numbers>

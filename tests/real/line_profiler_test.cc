@@ -7,9 +7,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include "io/units.h"
-#include "models/parts/robust_sphere.h"
 #include "models/robot_ball.h"
+#include "models/sphere.h"
 #include "solver/model.h"
 #include "solver/refine.h"
 #include "tests/real/data_sets.h"
@@ -119,7 +118,7 @@ TEST_F(LineProfilerTest, AllLinesLieOnOneSphere) {
   EXPECT_NEAR(free.radius, kRadius, 0.1);
 }
 
-// |p_in_base - c| - R over all poses: hand-eye as in RobotBall, centre and radius of one sphere.
+// |p_in_base - c| - R over all poses: hand-eye as in robot_ball::Model, centre and radius of one sphere.
 class SphereOfLines {
  public:
   enum Index { kHandEye = 0, kCentre = 6, kSphereRadius = 9 };
@@ -131,7 +130,7 @@ class SphereOfLines {
   };
   SphereOfLines(const Eigen::Isometry3d& flange_from_scanner, const Eigen::Vector3d& centre, Role radius) {
     Eigen::Matrix<double, 10, 1> start;
-    start << NumbersOf(flange_from_scanner), centre, kRadius;
+    start << robot_ball::NumbersOf(flange_from_scanner), centre, kRadius;
     for (int k = 0; k < start.size(); ++k)
       quantities_.push_back({"q" + std::to_string(k), k >= 3 && k < 6 ? Unit::kRad : Unit::kMm, Scope::kSystem,
                              k == kSphereRadius ? radius : Role::kEstimate, start[k], 0, false, ""});

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include "models/parts/sphere.h"
-#include "models/robot_ball/hand_eye.h"
-#include "models/robot_ball/ren_2012.h"
+#include "models/robot_ball/published.h"
+#include "models/robot_ball/start.h"
+#include "models/sphere.h"
 #include "solver/random.h"
 #include "tests/in_parallel.h"
 
@@ -28,14 +28,14 @@ std::vector<Vector3d> CapOf(const Vector3d& centre, Random* random) {
 }
 
 // One sphere through the points of all poses that see the first pose's first ball.
-double Radius(const RobotData& data, const RobotSetup& setup, uint64_t seed) {
+double Radius(const robot_ball::Measurements& data, const robot_ball::Setup& setup, uint64_t seed) {
   constexpr uint64_t kPointStream = uint64_t{5} << 32;
   Random random(seed, kPointStream);
-  const std::vector<RobotBall::View>& views = data.stations.front().views;
+  const std::vector<robot_ball::Model::View>& views = data.stations.front().views;
   const int sphere = views.front().balls.front().sphere;
   std::vector<Vector3d> in_base;
-  for (const RobotBall::View& view : views)
-    for (const RobotBall::SeenBall& ball : view.balls)
+  for (const robot_ball::Model::View& view : views)
+    for (const robot_ball::Model::SeenBall& ball : view.balls)
       if (ball.sphere == sphere)
         for (const Vector3d& point : CapOf(ball.centre, &random))
           in_base.push_back(BaseFromScanner(data, setup, view) * point);
@@ -50,27 +50,27 @@ double Reconstruction::Error(double share) const {
   return errors[static_cast<Eigen::Index>(share * static_cast<double>(errors.size() - 1))];
 }
 
-std::vector<Reconstruction> StudyConfigurations(const RobotScene& scene, size_t sets, int threads) {
-  using enum PoseConfiguration;
+std::vector<Reconstruction> StudyConfigurations(const robot_ball::Scene& scene, size_t sets, int threads) {
+  using enum robot_ball::PoseConfiguration;
   std::vector<Reconstruction> results;
-  for (const PoseConfiguration configuration : {kCollinear, kPlanar, kSpatial})
+  for (const robot_ball::PoseConfiguration configuration : {kCollinear, kPlanar, kSpatial})
     results.push_back({configuration, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(sets))});
   InParallel(sets, threads, [&](size_t set) {
-    RobotScene own = scene;
+    robot_ball::Scene own = scene;
     own.stations = 1;
     own.check_positions = 0;
     own.seed = scene.seed + 2 * set;
     own.noise_seed = scene.noise_seed + 2 * set;
-    RobotScene other = own;
+    robot_ball::Scene other = own;
     other.configuration = kSpatial;
     other.translations = 0;
     other.poses = 16;  // eight of either end
     ++other.seed;
     ++other.noise_seed;
-    const RobotData evaluated = SimulateRobot(other).data;
+    const robot_ball::Measurements evaluated = robot_ball::Simulate(other).data;
     for (Reconstruction& result : results) {
       own.configuration = result.configuration;
-      const Result<RobotSetup> setup = Ren2012(SimulateRobot(own).data);
+      const Result<robot_ball::Setup> setup = Ren2012(robot_ball::Simulate(own).data);
       CHECK(setup.ok()) << "seed " << own.seed << ": " << setup.error().message;
       result.radius[static_cast<Eigen::Index>(set)] = Radius(evaluated, *setup, other.noise_seed);
     }

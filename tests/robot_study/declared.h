@@ -7,8 +7,9 @@ namespace scancal::robot_study {
 enum class Noise { kDeclared, kEstimated };  // of balls and of the flange
 
 // Default roles of the links; noise as said, the artifact considered with its u.
-inline RobotBall DeclaredModel(const RobotData& data, const RobotScene& scene, Noise noise = Noise::kDeclared) {
-  RobotBall model(data.links, data.spheres);
+inline robot_ball::Model DeclaredModel(const robot_ball::Measurements& data, const robot_ball::Scene& scene,
+                                       Noise noise = Noise::kDeclared) {
+  robot_ball::Model model(data.links, data.spheres);
   const auto consider = [&](int k, double u) {
     if (u > 0) {
       model.quantity(k).role = Role::kConsider;

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include "models/robot_ball/gauge.h"
-#include "models/robot_ball/robot_fit.h"
+#include "models/robot_ball/fit.h"
 #include "solver/uncertainty/coverage.h"
 #include "solver/uncertainty/headline.h"
 #include "solver/weigh.h"
@@ -19,10 +18,10 @@ using Eigen::VectorXd;
 constexpr double kNormal95 = 1.959964;
 
 // The estimated quantities of the system at this setup.
-VectorXd Estimated(const Quantities& quantities, const RobotSetup& setup) {
+VectorXd Estimated(const Quantities& quantities, const robot_ball::Setup& setup) {
   std::vector<double> values(quantities.size());
-  VectorXd::Map(&values[RobotBall::kHandEye], 6) = NumbersOf(setup.flange_from_scanner);
-  VectorXd::Map(&values[RobotBall::kLinks], kLinkNumbers * std::ssize(setup.link_errors)) =
+  VectorXd::Map(&values[robot_ball::Model::kHandEye], 6) = robot_ball::NumbersOf(setup.flange_from_scanner);
+  VectorXd::Map(&values[robot_ball::Model::kLinks], kLinkNumbers * std::ssize(setup.link_errors)) =
       NumbersOf(setup.link_errors);
   std::vector<double> estimated;
   for (size_t k = 0; k < quantities.size(); ++k)
@@ -38,12 +37,12 @@ void WrapHandEye(const VectorXd& to, VectorXd* numbers) {
 }
 
 struct Truth {
-  RobotSetup setup;
-  std::vector<Station> stations;
+  robot_ball::Setup setup;
+  std::vector<robot_ball::Station> stations;
 };
 
-Truth TruthOf(const SimulatedRobot& robot) {
-  const Gauged gauged = InDefaultGauge(robot.data.links, robot.truth);
+Truth TruthOf(const robot_ball::Simulated& robot) {
+  const robot_ball::Gauged gauged = InDefaultGauge(robot.data.links, robot.truth);
   Truth truth{gauged.setup, robot.data.stations};
   for (size_t s = 0; s < truth.stations.size(); ++s)
     truth.stations[s].base_from_artifact = gauged.base_from_true_base * robot.base_from_artifact[s];
@@ -51,8 +50,8 @@ Truth TruthOf(const SimulatedRobot& robot) {
 }
 
 // Covariance of the estimated quantities of the system.
-Eigen::MatrixXd BoundAt(const Truth& truth, const RobotBall& model) {
-  Problem problem = MakeProblem<RobotBall>(std::make_shared<const RobotBall>(model), truth.stations);
+Eigen::MatrixXd BoundAt(const Truth& truth, const robot_ball::Model& model) {
+  Problem problem = MakeProblem<robot_ball::Model>(std::make_shared<const robot_ball::Model>(model), truth.stations);
   Estimate at = NominalStart(problem);
   at.system = Estimated(model.quantities(), truth.setup);
   Weigh(&problem, at);
@@ -71,10 +70,10 @@ struct Try {
   VectorXd error, U;  // empty: failed
 };
 
-Try Refined(const RobotScene& scene, Noise noise, const Truth& truth) {
-  const SimulatedRobot robot = SimulateRobot(scene);
-  const RobotBall model = DeclaredModel(robot.data, scene, noise);
-  const Result<RobotFit> fit = FitRobot(robot.data, model, robot.truth.flange_from_scanner);
+Try Refined(const robot_ball::Scene& scene, Noise noise, const Truth& truth) {
+  const robot_ball::Simulated robot = robot_ball::Simulate(scene);
+  const robot_ball::Model model = DeclaredModel(robot.data, scene, noise);
+  const Result<robot_ball::JointFit> fit = robot_ball::FitJointly(robot.data, model, robot.truth.flange_from_scanner);
   if (!fit.ok() || !fit->solution.fit.converged) return {};
   const Headline headline = HeadlineOf(fit->solution, ClusteredCovariance(fit->solution.problem, fit->solution.linear));
   VectorXd value = fit->solution.fit.estimate.system;
@@ -87,10 +86,10 @@ Try Refined(const RobotScene& scene, Noise noise, const Truth& truth) {
 
 }  // namespace
 
-Efficiency StudyEfficiency(const RobotScene& scene, Noise noise, size_t runs, int threads) {
-  const SimulatedRobot robot = SimulateRobot(scene);
+Efficiency StudyEfficiency(const robot_ball::Scene& scene, Noise noise, size_t runs, int threads) {
+  const robot_ball::Simulated robot = robot_ball::Simulate(scene);
   const Truth truth = TruthOf(robot);
-  const RobotBall exactly_known = DeclaredModel(robot.data, scene);
+  const robot_ball::Model exactly_known = DeclaredModel(robot.data, scene);
   Efficiency efficiency;
   for (const Quantity& quantity : exactly_known.quantities())
     if (quantity.scope == Scope::kSystem && quantity.role == Role::kEstimate) efficiency.names.push_back(quantity.name);
@@ -98,7 +97,7 @@ Efficiency StudyEfficiency(const RobotScene& scene, Noise noise, size_t runs, in
   efficiency.bound = bound.diagonal().cwiseSqrt();
   std::vector<Try> tries(runs);
   InParallel(runs, threads, [&](size_t run) {
-    RobotScene noisy = scene;
+    robot_ball::Scene noisy = scene;
     noisy.noise_seed = scene.noise_seed + run;
     tries[run] = Refined(noisy, noise, truth);
   });

@@ -18,6 +18,6 @@ struct Efficiency {  // one entry an estimated parameter of the system
 };
 
 // The scene with other noise in every run. The bound knows the artifact exactly.
-Efficiency StudyEfficiency(const RobotScene& scene, Noise noise, size_t runs, int threads);
+Efficiency StudyEfficiency(const robot_ball::Scene& scene, Noise noise, size_t runs, int threads);
 
 }  // namespace scancal::robot_study

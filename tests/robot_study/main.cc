@@ -52,13 +52,13 @@ bool PrintMethods(size_t sets) {
     fmt::print("| {} | {} | {} | {} |\n", method.name, Text(MeanOf(method.max), 3), Text(MeanOf(method.mean), 4), gain);
   }
   fmt::print("\nError of the sphere spacing at ten positions of a scale of {} mm; means over {} data sets.\n\n",
-             kScaleLength, sets);
+             robot_ball::kScaleLength, sets);
   return ordered;
 }
 
 bool PrintEfficiency(size_t runs) {
   constexpr double kMostRatio = 1.05, kLeastCoverage = 0.93, kMostCoverage = 0.97, kWidest = 1.15;
-  RobotScene exact_artifact;
+  robot_ball::Scene exact_artifact;
   exact_artifact.u_spheres = 0;
   fmt::print(
       "| noise | parameters | scatter / bound: mean ± its standard error | least | most | 95 % intervals that hold: "
@@ -68,7 +68,7 @@ bool PrintEfficiency(size_t runs) {
   bool all_hold = true;
   for (const auto& [name, scene, noise] : {std::tuple{"declared", exact_artifact, Noise::kDeclared},
                                            {"estimated", exact_artifact, Noise::kEstimated},
-                                           {"declared, artifact with u", RobotScene{}, Noise::kDeclared}}) {
+                                           {"declared, artifact with u", robot_ball::Scene{}, Noise::kDeclared}}) {
     const Efficiency e = StudyEfficiency(scene, noise, runs, kThreads);
     // With an uncertain artifact the bound, which knows it, is out of reach for what does not estimate the artifact.
     const bool holds = (scene.u_spheres > 0 || e.ratio.mean() < kMostRatio) && e.coverage.mean() >= kLeastCoverage &&
@@ -95,9 +95,9 @@ bool PrintConfigurations(size_t sets) {
   double before = std::numeric_limits<double>::infinity();
   bool ordered = true;
   for (const Reconstruction& result : StudyConfigurations({}, sets, kThreads)) {
-    const char* name = result.configuration == PoseConfiguration::kSpatial  ? "spatial"
-                       : result.configuration == PoseConfiguration::kPlanar ? "planar"
-                                                                            : "collinear";
+    const char* name = result.configuration == robot_ball::PoseConfiguration::kSpatial  ? "spatial"
+                       : result.configuration == robot_ball::PoseConfiguration::kPlanar ? "planar"
+                                                                                        : "collinear";
     const double median = result.Error(0.5);
     fmt::print("| {} | {:.3f} | {:.3f} |\n", name, median, result.Error(0.9));
     ordered &= median < before;

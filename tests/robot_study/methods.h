@@ -22,6 +22,6 @@ inline constexpr size_t kOrdered = 5;  // methods whose order is the paper's
 // In the order of the paper: data sheet and drawing, Ren 2012, Mu 2017, Zhou 2025, the refinement with declared noise;
 // then, apart, the paper's first hand-eye on nominal links. The scene with seeds of its own in every set. A method that
 // fails on a set is a mistake of the study.
-std::vector<Method> StudyMethods(const RobotScene& scene, size_t sets, int threads);
+std::vector<Method> StudyMethods(const robot_ball::Scene& scene, size_t sets, int threads);
 
 }  // namespace scancal::robot_study

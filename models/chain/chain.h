@@ -1,0 +1,110 @@
+// A robot arm as a product of modified Denavit-Hartenberg links.
+#pragma once
+#include <Eigen/Geometry>
+#include <cmath>
+#include <string>
+#include <vector>
+#include "solver/model.h"
+
+namespace scancal {
+
+// Hayati's form, eqs. (2)-(4) of Zhou et al. 2025:
+//
+//     link_i = Rz(q_i + theta_i) Tz(d_i) Tx(a_i) Rx(alpha_i) Ry(beta_i)
+//
+// Nominal values, or errors of them; mm, rad.
+struct Link {
+  double theta = 0, d = 0, a = 0, alpha = 0, beta = 0;
+};
+inline constexpr int kLinkNumbers = 5;  // in the order of Link
+
+// All numbers of all links, kLinkNumbers a link, and back.
+Eigen::VectorXd NumbersOf(const std::vector<Link>& links);
+std::vector<Link> LinksOf(const Eigen::VectorXd& numbers);
+
+// Nominal links and their errors, added; no errors: as they are.
+std::vector<Link> WithErrors(const std::vector<Link>& nominal, const std::vector<Link>& errors);
+
+// A rotation by its columns and a translation, of numbers or of dual numbers.
+template <class T>
+struct ChainFrame {
+  T x[3], y[3], z[3], p[3];
+};
+
+template <class T>
+ChainFrame<T> MakeChainFrame(const Eigen::Isometry3d& pose) {
+  ChainFrame<T> frame;
+  for (int i = 0; i < 3; ++i) {
+    frame.x[i] = T(pose(i, 0));
+    frame.y[i] = T(pose(i, 1));
+    frame.z[i] = T(pose(i, 2));
+    frame.p[i] = T(pose(i, 3));
+  }
+  return frame;
+}
+
+// Turns columns u and v by the angle about the third: u c + v s, v c - u s.
+template <class T, class Angle>
+void TurnColumns(const Angle& angle, T u[3], T v[3]) {
+  using std::cos, std::sin;
+  const Angle c = cos(angle), s = sin(angle);
+  for (int i = 0; i < 3; ++i) {
+    const T old = u[i];
+    u[i] = old * c + v[i] * s;
+    v[i] = v[i] * c - old * s;
+  }
+}
+
+// Few numbers of a chain have a derivative at a time; the others need no dual arithmetic.
+template <class T>
+void TurnBy(const T& angle, T u[3], T v[3]) {
+  if (IsZero(angle)) return;
+  if (IsConstant(angle)) {
+    TurnColumns(ValueOf(angle), u, v);
+  } else {
+    TurnColumns(angle, u, v);
+  }
+}
+
+template <class T>
+void Shift(const T axis[3], const T& by, T p[3]) {
+  const bool constant = IsConstant(by);
+  for (int i = 0; i < 3; ++i) {
+    if (constant) {
+      p[i] += axis[i] * ValueOf(by);
+    } else {
+      p[i] += axis[i] * by;
+    }
+  }
+}
+
+// frame := frame * link_1 ... link_n at the joint angles (rad). errors: kLinkNumbers per link, added to the nominal.
+template <class T>
+void MoveAlong(const std::vector<Link>& links, const double* joints, const T* errors, ChainFrame<T>* frame) {
+  for (size_t k = 0; k < links.size(); ++k, errors += kLinkNumbers) {
+    const Link& link = links[k];
+    TurnBy(T(joints[k] + link.theta + errors[0]), frame->x, frame->y);
+    Shift(frame->z, T(link.d + errors[1]), frame->p);
+    Shift(frame->x, T(link.a + errors[2]), frame->p);
+    TurnBy(T(link.alpha + errors[3]), frame->y, frame->z);
+    TurnBy(T(link.beta + errors[4]), frame->z, frame->x);
+  }
+}
+
+// The flange at the joint angles (rad, one per link), links as they are.
+Eigen::Isometry3d BaseFromFlange(const std::vector<Link>& links, const std::vector<double>& joints);
+
+// Appends theta_1 .. beta_n, errors of the links, all held at zero, in the order that MoveAlong takes.
+void DeclareLinks(size_t links, Quantities* quantities);
+
+// Whether the axis of the next joint is nominally parallel to this link's: then d of this link and of the next one
+// cannot be told apart, and a small turn of that axis is beta.
+bool NextAxisIsParallel(const Link& link);
+
+// The roles of a robot whose end carries something whose pose is estimated as well: theta_1 and d_1 are the base's, all
+// of the last link is the tool's, d before a parallel axis is the next d; beta is estimated there and held elsewhere.
+// Of six revolute joints that leaves 18, and with a hand-eye of six numbers the 24 = 4 x 6 + 6 - 6 that data without a
+// fixed base can determine. first: index of theta_1. Estimated ones have no prior.
+void SetDefaultLinkRoles(const std::vector<Link>& links, int first, Quantities* quantities);
+
+}  // namespace scancal

@@ -1,0 +1,29 @@
+// A robot in the tables of a result, and what a result says of its links. mm, rad.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+#include "io/result.h"
+#include "models/chain/chain.h"
+#include "models/tables.h"
+
+namespace scancal {
+
+// Poses of a robot: q1 .. qn of the joints, x, y, z of the flange in the base, then `more`.
+NumberTable PoseTable(size_t joints, const std::vector<std::pair<std::string, Unit>>& more);
+void AddPose(const std::vector<double>& joints, const Eigen::Vector3d& flange, const std::vector<double>& more,
+             NumberTable* poses);
+
+// Residuals of points seen from those poses: pose (row of its table), x, y, z.
+NumberTable PointResidualTable();
+
+// Parameter::nominal of theta_1 .. beta_n.
+void AddNominal(const std::vector<Link>& links, Calibration* calibration);
+
+// Values of these parameters, in this order. An Error names one that the calibration does not have.
+Result<Eigen::VectorXd> ValuesOf(const Calibration& calibration, const std::vector<std::string>& names);
+
+// theta_1 .. beta_n of all links. An Error also where the calibration has more links than these.
+Result<std::vector<Link>> LinkErrorsOf(const Calibration& calibration, size_t links);
+
+}  // namespace scancal

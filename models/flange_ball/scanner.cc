@@ -1,0 +1,172 @@
+#include "models/flange_ball/scanner.h"
+#include <fmt/format.h>
+#include <cmath>
+#include "models/chain/tables.h"
+
+namespace scancal::flange_ball {
+namespace {
+
+double Poses(const std::vector<Model::Target>& tools) {
+  double poses = 0;
+  for (const Model::Target& tool : tools) poses += static_cast<double>(tool.views.size());
+  return poses;
+}
+
+double MeanSpread(const Robot& robot, const std::vector<Model::Target>& tools) {
+  double sum = 0;
+  for (const Model::Target& tool : tools) sum += SeatingOf(robot, tool).spread;
+  return sum / static_cast<double>(tools.size());
+}
+
+// Largest error of the sockets' distance.
+double WorstSpacing(const Robot& robot, const std::vector<Model::Target>& tools, double spacing) {
+  double worst = 0;
+  for (const Model::Target& tool : tools) worst = std::max(worst, std::abs(SeatingOf(robot, tool).spacing - spacing));
+  return worst;
+}
+
+std::map<std::string, std::vector<double>> GeometryOf(const Robot& robot, const Model::Target& tool) {
+  const Seating seating = SeatingOf(robot, tool);
+  const Eigen::Vector3d socket = robot.Socket(tool, 0);
+  return {{"spread", {seating.spread}}, {"spacing", {seating.spacing}}, {"socket", {socket[0], socket[1], socket[2]}}};
+}
+
+Result<std::vector<Model::Target>> ReadTools(const std::vector<ToolDeclaration>& tools,
+                                             const Declaration& declaration) {
+  std::vector<Model::Target> targets;
+  for (const ToolDeclaration& tool : tools) {
+    SCANCAL_ASSIGN_OR_RETURN(targets.emplace_back(), ReadTool(tool, declaration));
+  }
+  return targets;
+}
+
+// Of every location of the tool: residual tables "poses" (with the number of the socket and the rms of the residual's
+// coordinates) and "balls" (one a pose, the residual of Model: in the base, turned back by theta_1), and the scene
+// in the base: "outline", the two sockets, and "views", from the flange to the ball. Parameters get their nominal
+// number.
+void AddTables(const std::vector<Link>& nominal, const std::vector<Model::Target>& tools, const Solution& solution,
+               Calibration* calibration) {
+  const Robot robot = RobotOf(nominal, solution);
+  for (size_t t = 0; t < tools.size(); ++t) {
+    const std::vector<Eigen::VectorXd> residuals = ResidualsOf(solution, t);
+    NumberTable poses = PoseTable(nominal.size(), {{"socket", Unit::kOne}, {"rms", Unit::kMm}}),
+                balls = PointResidualTable(), outline = PointTable(), views = SightTable();
+    for (size_t v = 0; v < tools[t].views.size(); ++v) {
+      const Model::View& view = tools[t].views[v];
+      const Eigen::Vector3d r = residuals[v], flange = BaseFromFlange(robot.links, view.joints).translation();
+      AddPose(view.joints, flange, {static_cast<double>(view.socket), r.norm() / std::sqrt(3.0)}, &poses);
+      balls.rows.push_back({static_cast<double>(v), r[0], r[1], r[2]});
+      AddSight(flange, robot.InBase(view.joints), &views);
+    }
+    for (const int socket : {0, 1}) AddPoint(robot.Socket(tools[t], socket), &outline);
+    calibration->targets[t].residual_tables = {{"poses", poses}, {"balls", balls}};
+    calibration->targets[t].scene = {{"outline", outline}, {"views", views}};
+  }
+  AddNominal(nominal, calibration);
+}
+
+// Warns of a ball so near to the last joint's axis that the link before is known to a few mm only. On the axis the last
+// joint has no say, and the link before must place a mere point: three of its four numbers and the ball's height do
+// that together.
+void JudgeBall(const Robot& robot, Calibration* calibration) {
+  constexpr double kNearAxis_mm = 5;
+  const std::string before = std::to_string(robot.links.size() - 1);
+  const double from_axis = robot.ball.head<2>().norm();
+  if (from_axis > kNearAxis_mm || robot.links.size() < 2) return;
+  std::string free;
+  for (const char* name : {"theta_", "d_", "a_", "alpha_"}) {
+    const Parameter* parameter = calibration->Find(name + before);
+    if (!parameter || parameter->role != Role::kEstimate) return;
+    free += (free.empty() ? "" : ", ") + parameter->name;
+  }
+  calibration->warnings.push_back(fmt::format(
+      "the ball lies {:.2g} mm from the axis of the last joint: {} and ball_z are hardly determined one by one, only "
+      "where the ball is; hold theta_{} and alpha_{}, or give priors",
+      from_axis, free, before, before));
+}
+
+// Warns of a ball that strays much farther where the tool was held out (mean spreads, mm).
+void JudgeHeldOut(double spread, double held_out, Calibration* calibration) {
+  constexpr double kMuchMore = 1.5;
+  if (held_out < kMuchMore * spread) return;
+  calibration->warnings.push_back(fmt::format(
+      "at the locations held out the ball strays by {:.3g} mm on average, {:.2g} times as far as where the robot was "
+      "calibrated: the model lacks something there, and u does not hold it; calibrate with more locations of the tool",
+      held_out, held_out / spread));
+}
+
+}  // namespace
+
+Scanner::Scanner(Declaration declaration, std::vector<Model::Target> targets, std::vector<Model::Target> check)
+    : declaration_(std::move(declaration)), targets_(std::move(targets)), check_(std::move(check)) {}
+
+std::string Scanner::Describe() const {
+  return Opening(declaration_.dataset, fmt::format("flange-ball, {} joints", declaration_.model.links().size())) +
+         fmt::format("; sockets {:g} mm apart; {} locations of the tool with {} poses, {} more with {} poses held out.",
+                     Spacing(), targets_.size(), Poses(targets_), check_.size(), Poses(check_));
+}
+
+std::vector<std::filesystem::path> Scanner::Files() const { return declaration_.Files(); }
+
+double Scanner::Spacing() const { return declaration_.model.quantities()[Model::kSpacing].value; }
+
+Result<Solution> Scanner::Fit(const RefineChoice& choice) const {
+  SCANCAL_ASSIGN_OR_RETURN(Solution solution, FitJointly(declaration_.model, targets_, choice.max_iterations));
+  if (choice.equal_weights) return solution;
+  return SolveWeighted(solution, kLeastSigma_mm, {choice.max_iterations});
+}
+
+Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
+  SCANCAL_RETURN_IF_ERROR(CheckOnlyResidual(choice, "the position of the ball in its socket"));
+  SCANCAL_RETURN_IF_ERROR(CheckMonteCarlo(choice, !choice.equal_weights));
+  const Stopwatch watch;
+  SCANCAL_ASSIGN_OR_RETURN(const Solution solution, Fit(choice));
+  const Refined refined{.solution = solution, .residual = "ball in socket", .seconds = watch.Seconds()};
+  Calibration result = Conclude(declaration_.dataset, refined, choice.monte_carlo);
+  const Robot nominal = FitBall(declaration_.model.links(), targets_),
+              robot = RobotOf(declaration_.model.links(), solution);
+  for (size_t t = 0; t < targets_.size(); ++t) result.targets[t].geometry = GeometryOf(robot, targets_[t]);
+  for (const Model::Target& tool : check_) {
+    result.check.names.push_back("spacing at " + tool.name);
+    result.check.before.push_back(SeatingOf(nominal, tool).spacing - Spacing());
+    result.check.after.push_back(SeatingOf(robot, tool).spacing - Spacing());
+    result.check.u.push_back(declaration_.model.quantities()[Model::kSpacing].u);
+  }
+  AddTables(declaration_.model.links(), targets_, solution, &result);
+  JudgeBall(robot, &result);
+  if (!check_.empty()) JudgeHeldOut(MeanSpread(robot, targets_), MeanSpread(robot, check_), &result);
+  return result;
+}
+
+Result<Comparison> Scanner::Compare(const CompareChoice&) const {
+  SCANCAL_ASSIGN_OR_RETURN(const Solution solution, Fit({}));
+  Comparison comparison;
+  comparison.columns = {{"calibrated with/mm"}, {"held out/mm"}, {"worst spacing/mm"}, {"worst, held out/mm"}};
+  for (const auto* tools : {&targets_, &check_})
+    for (const Model::Target& tool : *tools) comparison.columns.push_back({tool.name + "/mm"});
+  const auto add = [&](const std::string& method, const Robot& robot, const std::string& note) {
+    ComparisonRow& row = comparison.rows.emplace_back();
+    row.method = method;
+    row.note = note;
+    row.cells = {{MeanSpread(robot, targets_)}, {}, {WorstSpacing(robot, targets_, Spacing())}, {}};
+    if (!check_.empty()) {
+      row.cells[1].value = MeanSpread(robot, check_);
+      row.cells[3].value = WorstSpacing(robot, check_, Spacing());
+    }
+    for (const auto* tools : {&targets_, &check_})
+      for (const Model::Target& tool : *tools) row.cells.push_back({SeatingOf(robot, tool).spread});
+  };
+  add("nominal, ball fitted", FitBall(declaration_.model.links(), targets_), "");
+  add("refined", RobotOf(declaration_.model.links(), solution), solution.fit.message);
+  return comparison;
+}
+
+Result<std::unique_ptr<scancal::Scanner>> Load(const Dataset& dataset) {
+  SCANCAL_ASSIGN_OR_RETURN(Declaration declaration, Declare(dataset));
+  SCANCAL_ASSIGN_OR_RETURN(std::vector<Model::Target> targets, ReadTools(declaration.targets, declaration));
+  SCANCAL_ASSIGN_OR_RETURN(std::vector<Model::Target> check, ReadTools(declaration.check, declaration));
+  return std::unique_ptr<scancal::Scanner>(
+      std::make_unique<Scanner>(std::move(declaration), std::move(targets), std::move(check)));
+}
+
+}  // namespace scancal::flange_ball

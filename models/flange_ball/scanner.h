@@ -1,0 +1,67 @@
+// The robot with a ball on its flange as a Scanner, and what its dataset.yaml declares.
+#pragma once
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+#include "models/flange_ball/fit.h"
+#include "models/scanner.h"
+
+namespace scancal::flange_ball {
+
+struct ToolDeclaration {  // one location of the tool
+  std::string name;
+  std::array<std::filesystem::path, 2> sockets;  // joint angles with the ball in socket 0, in socket 1
+};
+
+struct Declaration {
+  Dataset dataset;
+  Model model{{}};                              // roles, values and u as declared
+  std::vector<std::string> columns;             // of files without a header; empty: files have one
+  std::vector<ToolDeclaration> targets, check;  // check: not used in the calibration
+  std::vector<std::filesystem::path> Files() const;
+};
+
+// Takes every key of the data set:
+//
+//     robot: {links: [...]}           nominal, base to flange
+//     columns: [q1_rad, q2_rad, ...]  of joint files without a header
+//     targets: [{name: front, sockets: [front/hole_0.csv, front/hole_1.csv]}, ...]
+//     check: [...]                    further ones, held out
+//     parameters: {spacing: {consider: 50, u: 0.05}, links: {estimate: 0, u_length: 1, u_angle: 1}, theta_6: hold}
+//     influences: {seat: estimate, joints: 0.01}
+Result<Declaration> Declare(const Dataset& dataset);
+
+// The joint angles of its files, two poses or more in each.
+Result<Model::Target> ReadTool(const ToolDeclaration& tool, const Declaration& declaration);
+
+class Scanner final : public scancal::Scanner {
+ public:
+  // targets, check: in the order of the declaration.
+  Scanner(Declaration declaration, std::vector<Model::Target> targets, std::vector<Model::Target> check);
+  std::string Describe() const override;
+  const Dataset& dataset() const override { return declaration_.dataset; }
+  std::vector<std::filesystem::path> Files() const override;
+  Result<Json> Data() const override;
+  Result<Calibration> Calibrate(const RefineChoice& choice) const override;
+  // The nominal robot, of which only the ball is fitted, and the refined one: how far the ball strays in its sockets,
+  // where the tool was calibrated with and where it was held out.
+  Result<Comparison> Compare(const CompareChoice& choice) const override;
+
+ private:
+  double Spacing() const;  // as declared, mm
+  Result<Solution> Fit(const RefineChoice& choice) const;
+
+  Declaration declaration_;
+  std::vector<Model::Target> targets_, check_;
+};
+
+Result<std::unique_ptr<scancal::Scanner>> Load(const Dataset& dataset);
+Result<std::unique_ptr<scancal::Scanner>> Reload(const Dataset& dataset, const Json& data, const std::string& file);
+// The ball of every pose in the base, held out ones as well; a scan is a location of the tool.
+Result<int64_t> Transform(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
+
+inline constexpr ScannerKind kKind = {"flange-ball", &Load, &Reload, &Transform};
+
+}  // namespace scancal::flange_ball

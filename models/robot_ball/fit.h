@@ -1,0 +1,36 @@
+// The joint refinement of hand-eye, link errors and artifact poses.
+#pragma once
+#include "io/result.h"
+#include "models/robot_ball.h"
+#include "solver/calibrate.h"
+
+namespace scancal::robot_ball {
+
+struct JointFit {
+  std::vector<Station> stations;  // as they entered: the poses from which artifact_x .. _rz count
+  Solution solution;
+  Setup Found() const;
+  Eigen::Isometry3d BaseFromArtifact(size_t station) const;
+};
+
+// Generalised least squares of all balls of all poses at once: rows are whitened per pose with V = blockdiag(balls) +
+// sigma_r^2 1 1' (x) I3, because repeatability is common to all balls of a pose. sigma_r and the noise of the balls are
+// as declared, or restricted maximum likelihood. model: carries roles, priors and the values of the links, estimated or
+// held, that the fit starts from; hand_eye: where that starts; every station starts where its balls then lie
+// (StationsAt).
+//
+// An Error names what the data do not determine.
+Result<JointFit> FitJointly(const Measurements& data, const Model& model, const Eigen::Isometry3d& hand_eye,
+                            int max_iterations = 100);
+
+struct Gauged {
+  Setup setup;
+  Eigen::Isometry3d base_from_true_base;  // the base that these numbers are told in
+};
+
+// The numbers that a calibration with the default roles of the links finds of a robot with these errors: theta_1 and
+// d_1 go into the base, all of the last link into the hand-eye, d before a parallel axis into the next d. Every ball is
+// seen as before; exact but for the last, where a beta before it is not zero (second order).
+Gauged InDefaultGauge(const std::vector<Link>& nominal, const Setup& truth);
+
+}  // namespace scancal::robot_ball

@@ -1,0 +1,130 @@
+#include "models/robot_ball/scanner.h"
+#include <fmt/format.h>
+#include <cmath>
+#include "models/chain/tables.h"
+#include "models/robot_ball/fit.h"
+#include "models/robot_ball/judge.h"
+#include "models/robot_ball/published.h"
+#include "models/robot_ball/start.h"
+
+namespace scancal::robot_ball {
+namespace {
+
+Eigen::Vector3d MeanOf(const std::vector<Model::SeenBall>& balls) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Model::SeenBall& ball : balls) sum += ball.centre;
+  return sum / static_cast<double>(balls.size());
+}
+
+void AddResiduals(const Measurements& data, const JointFit& fit, size_t t, TargetSummary* target) {
+  const Station& station = fit.stations[t];
+  const std::vector<Eigen::VectorXd> residuals = ResidualsOf(fit.solution, t);
+  const Setup setup = fit.Found(), flange{Eigen::Isometry3d::Identity(), setup.link_errors};
+  NumberTable poses = PoseTable(data.links.size(), {{"balls", Unit::kOne}, {"rms", Unit::kMm}}),
+              balls = PointResidualTable();
+  for (size_t v = 0; v < station.views.size(); ++v) {
+    const Model::View& view = station.views[v];
+    const Eigen::VectorXd& r = residuals[v];
+    poses.names.push_back(view.name);
+    AddPose(view.joints, BaseFromScanner(data, flange, view).translation(),
+            {static_cast<double>(view.balls.size()), std::sqrt(r.squaredNorm() / static_cast<double>(r.size()))},
+            &poses);
+    for (size_t b = 0; b < view.balls.size(); ++b) {
+      const Eigen::Vector3d of_ball = r.segment<3>(3 * static_cast<Eigen::Index>(b));
+      balls.names.push_back(data.spheres[view.balls[b].sphere].name);
+      balls.rows.push_back({static_cast<double>(v), of_ball[0], of_ball[1], of_ball[2]});
+    }
+  }
+  target->residual_tables = {{"poses", poses}, {"balls", balls}};
+}
+
+void AddScene(const Measurements& data, const JointFit& fit, size_t t, TargetSummary* target) {
+  NumberTable outline = PointTable(), views = SightTable();
+  for (const Model::Sphere& sphere : data.spheres) {
+    outline.names.push_back(sphere.name);
+    AddPoint(fit.BaseFromArtifact(t) * sphere.centre, &outline);
+  }
+  for (const Model::View& view : fit.stations[t].views) {
+    const Eigen::Isometry3d base_from_scanner = BaseFromScanner(data, fit.Found(), view);
+    views.names.push_back(view.name);
+    AddSight(base_from_scanner.translation(), base_from_scanner * MeanOf(view.balls), &views);
+  }
+  target->scene = {{"outline", outline}, {"views", views}};
+}
+
+// Of every station: residual tables "poses" (named; with the number of balls and the rms of their residuals'
+// coordinates) and "balls" (named; in the scanner's frame, without weights), and the scene in the base: "outline", the
+// artifact's balls where the station holds them, and "views", from the scanner to the mean of the balls seen.
+// Parameters get their nominal number.
+void AddTables(const Measurements& data, const JointFit& fit, Calibration* calibration) {
+  for (size_t t = 0; t < calibration->targets.size(); ++t) {
+    AddResiduals(data, fit, t, &calibration->targets[t]);
+    AddScene(data, fit, t, &calibration->targets[t]);
+  }
+  AddNominal(data.links, calibration);
+}
+
+void AddGeometry(const JointFit& fit, Calibration* result) {
+  result->frames["hand_eye"] = fit.Found().flange_from_scanner.matrix();
+  for (size_t t = 0; t < result->targets.size(); ++t) {
+    const Eigen::Matrix<double, 6, 1> pose = NumbersOf(fit.BaseFromArtifact(t));
+    result->targets[t].geometry = {{"base_from_artifact", {pose.data(), pose.data() + 6}}};
+  }
+}
+
+void AddCheck(const Measurements& data, const Setup& before, const Setup& after, Calibration* result) {
+  for (const CheckLength& length : data.check) {
+    result->check.names.push_back(length.name);
+    result->check.u.push_back(length.u);
+  }
+  result->check.before = SpacingErrors(data, before);
+  result->check.after = SpacingErrors(data, after);
+}
+
+}  // namespace
+
+Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
+  SCANCAL_RETURN_IF_ERROR(CheckOnlyResidual(choice, "the vector of a ball's centre"));
+  if (choice.equal_weights)
+    return Error{
+        "weights: found equal, but the balls of a pose share its repeatability: they cannot be weighed equally"};
+  const Measurements& data = declaration_.data;
+  SCANCAL_ASSIGN_OR_RETURN(const Setup start, InitialHandEye(data));
+  const Stopwatch watch;
+  SCANCAL_ASSIGN_OR_RETURN(const JointFit fit,
+                           FitJointly(data, model_, start.flange_from_scanner, choice.max_iterations));
+  const Refined refined{.solution = fit.solution,
+                        .residual = "ball centre",
+                        .seconds = watch.Seconds(),
+                        .warnings = declaration_.warnings};
+  Calibration result = Conclude(declaration_.dataset, refined, choice.monte_carlo);
+  AddGeometry(fit, &result);
+  AddTables(data, fit, &result);
+  SCANCAL_ASSIGN_OR_RETURN(const Setup before, VirtualPointHandEye(data));
+  AddCheck(data, before, fit.Found(), &result);
+  Judge(data, fit, &result);
+  return result;
+}
+
+std::string Scanner::Describe() const {
+  const Measurements& data = declaration_.data;
+  size_t poses = 0, balls = 0;
+  for (const Station& station : data.stations) {
+    poses += station.views.size();
+    for (const Model::View& pose : station.views) balls += pose.balls.size();
+  }
+  const std::string arm =
+      data.links.empty() ? "poses of the flange as given" : fmt::format("an arm of {} joints", data.links.size());
+  return Opening(declaration_.dataset, "robot with a scanner, " + arm) +
+         fmt::format("; {} stations, {} poses, {} ball centres of an artifact of {} balls{}.", data.stations.size(),
+                     poses, balls, data.spheres.size(),
+                     data.check.empty() ? "" : fmt::format("; {} known lengths for a check", data.check.size()));
+}
+
+Result<std::unique_ptr<scancal::Scanner>> Load(const Dataset& dataset) {
+  SCANCAL_ASSIGN_OR_RETURN(Declaration declaration, Declare(dataset));
+  SCANCAL_ASSIGN_OR_RETURN(Model model, DeclareModel(declaration));
+  return std::unique_ptr<scancal::Scanner>(std::make_unique<Scanner>(std::move(declaration), std::move(model)));
+}
+
+}  // namespace scancal::robot_ball

@@ -1,0 +1,188 @@
+#include "models/robot_ball/start.h"
+#include <fmt/format.h>
+#include <glog/logging.h>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace scancal::robot_ball {
+namespace {
+
+using Eigen::Index, Eigen::Isometry3d, Eigen::Matrix3d, Eigen::MatrixXd, Eigen::Vector3d, Eigen::VectorXd;
+
+// Columns of the linear model: R column by column, t, the factor of F's translation.
+constexpr int kR = 0, kT = 9, kFactor = 12, kColumns = 13;
+constexpr int kStationColumns = 12;  // N column by column, n
+// Turns and movements below these are the robot's repeatability, not its motion.
+constexpr double kSmallestTurn_rad = 1e-3, kSmallestMove_mm = 0.01;
+
+int Balls(const Station& station) {
+  int balls = 0;
+  for (const Model::View& view : station.views) balls += static_cast<int>(view.balls.size());
+  return balls;
+}
+
+int Balls(const std::vector<Station>& stations) {
+  int balls = 0;
+  for (const Station& station : stations) balls += Balls(station);
+  return balls;
+}
+
+// What is left of `rows` on the complement of the columns of `of`.
+MatrixXd ProjectOut(const MatrixXd& of, const MatrixXd& rows) {
+  if (rows.rows() == 0) return rows;
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(of);
+  return (qr.householderQ().adjoint() * rows).bottomRows(rows.rows() - qr.rank());
+}
+
+// A triangle T of no more rows than columns with |T x| = |rows x|.
+MatrixXd Triangle(const MatrixXd& rows) {
+  if (rows.rows() <= rows.cols()) return rows;
+  const Eigen::HouseholderQR<MatrixXd> qr(rows);
+  return qr.matrixQR().topRows(rows.cols()).triangularView<Eigen::Upper>();
+}
+
+MatrixXd StationRows(const Measurements& data, const Station& station) {
+  const Index rows = 3 * Balls(station);
+  MatrixXd common(rows, kColumns), own(rows, kStationColumns);
+  Index row = 0;
+  for (const Model::View& view : station.views) {
+    const Isometry3d flange = BaseFromScanner(data, {}, view);
+    for (const Model::SeenBall& ball : view.balls) {
+      for (int l = 0; l < 3; ++l) {
+        common.block<3, 3>(row, kR + 3 * l) = flange.linear() * ball.centre[l];
+        own.block<3, 3>(row, 3 * l) = Matrix3d::Identity() * data.spheres[ball.sphere].centre[l];
+      }
+      common.block<3, 3>(row, kT) = flange.linear();
+      common.block<3, 1>(row, kFactor) = flange.translation();
+      own.block<3, 3>(row, 9).setIdentity();
+      row += 3;
+    }
+  }
+  for (Index k = 0; k < own.cols(); ++k) own.col(k).normalize();  // of all zeros: stays, and is no column
+  return Triangle(ProjectOut(own, common));
+}
+
+MatrixXd AllRows(const Measurements& data) {
+  std::vector<MatrixXd> of_stations;
+  Index rows = 0;
+  for (const Station& station : data.stations) {
+    of_stations.push_back(StationRows(data, station));
+    rows += of_stations.back().rows();
+  }
+  MatrixXd all(rows, kColumns);
+  rows = 0;
+  for (const MatrixXd& each : of_stations) {
+    all.middleRows(rows, each.rows()) = each;
+    rows += each.rows();
+  }
+  return all;
+}
+
+Matrix3d NearestRotation(Matrix3d matrix) {
+  if (matrix.determinant() < 0) matrix = -matrix;  // a singular vector has no sign
+  const Eigen::JacobiSVD<Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return svd.matrixU() * svd.matrixV().transpose();
+}
+
+std::string Names(const std::vector<Station>& stations) {
+  constexpr size_t kNamed = 4;
+  std::string names = stations.size() == 1 ? "station " : "stations ";
+  for (size_t s = 0; s < std::min(stations.size(), kNamed); ++s) names += (s ? ", " : "") + stations[s].name;
+  return stations.size() > kNamed ? fmt::format("{} and {} more", names, stations.size() - kNamed) : names;
+}
+
+Result<Matrix3d> Rotation(const std::vector<Station>& stations, const MatrixXd& rows) {
+  MatrixXd shift = rows.middleCols<4>(kT);
+  for (Index k = 0; k < shift.cols(); ++k) shift.col(k).normalize();
+  const MatrixXd left = ProjectOut(shift, rows.leftCols<9>());
+  if (left.rows() < 8)
+    return Error{
+        fmt::format("{}: the balls give {} equations for the turn of the hand-eye, expected at least 8: see "
+                    "the same balls from more poses",
+                    Names(stations), left.rows())};
+  const Eigen::JacobiSVD<MatrixXd> svd(left, Eigen::ComputeFullV);
+  VectorXd sigma = VectorXd::Zero(9);
+  sigma.head(svd.singularValues().size()) = svd.singularValues();
+  if (sigma[7] < kSmallestMove_mm * std::sqrt(Balls(stations)) || sigma[8] > 0.5 * sigma[7])
+    return Error{fmt::format(
+        "{}: the poses do not determine the turn of the hand-eye: they hardly turn or move the flange, or not about "
+        "two axes or in three directions, or they contradict each other",
+        Names(stations))};
+  const VectorXd smallest = svd.matrixV().col(8);
+  return NearestRotation(Eigen::Map<const Matrix3d>(smallest.data()));
+}
+
+Result<Vector3d> Translation(const std::vector<Station>& stations, const MatrixXd& rows, const Matrix3d& rotation) {
+  const VectorXd known = rows.leftCols<9>() * rotation.reshaped() + rows.col(kFactor);
+  const Eigen::JacobiSVD<MatrixXd> svd(rows.middleCols<3>(kT), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const double scale = std::sqrt(Balls(stations));  // a singular value over it is about the rms turn
+  if (svd.singularValues()[0] < kSmallestTurn_rad * scale)
+    return Error{fmt::format(
+        "{}: the poses do not rotate the flange: the translation of the hand-eye is not determined; turn the robot "
+        "about two axes",
+        Names(stations))};
+  if (svd.singularValues()[2] < kSmallestTurn_rad * scale) {
+    const Vector3d axis = svd.matrixV().col(2);
+    return Error{fmt::format(
+        "{}: the poses rotate the flange about one axis only, ({:.2f}, {:.2f}, {:.2f}) of the flange: the translation "
+        "of the hand-eye along it is not determined; turn the robot about a second axis",
+        Names(stations), axis[0], axis[1], axis[2])};
+  }
+  return Vector3d(svd.solve(-known));
+}
+
+bool OnALine(const MatrixXd& points) {
+  const MatrixXd centred = points.colwise() - points.rowwise().mean();
+  const VectorXd sigma = Eigen::JacobiSVD<MatrixXd>(centred).singularValues();
+  return sigma.size() < 2 || sigma[1] < 1e-6 * sigma[0] || sigma[0] == 0;
+}
+
+}  // namespace
+
+Isometry3d BaseFromScanner(const Measurements& data, const Setup& setup, const Model::View& view) {
+  CHECK(setup.link_errors.empty() || setup.link_errors.size() == data.links.size());
+  const std::vector<Link> links = WithErrors(data.links, setup.link_errors);
+  return view.base_from_flange * BaseFromFlange(links, view.joints) * setup.flange_from_scanner;
+}
+
+Result<Setup> InitialHandEye(const Measurements& data) {
+  const MatrixXd rows = AllRows(data);
+  SCANCAL_ASSIGN_OR_RETURN(const Matrix3d rotation, Rotation(data.stations, rows));
+  SCANCAL_ASSIGN_OR_RETURN(const Vector3d translation, Translation(data.stations, rows, rotation));
+  Setup setup;
+  setup.flange_from_scanner.linear() = rotation;
+  setup.flange_from_scanner.translation() = translation;
+  setup.link_errors.resize(data.links.size());
+  return setup;
+}
+
+Result<Vector3d> HandEyeTranslation(const Measurements& data, const Matrix3d& rotation) {
+  return Translation(data.stations, AllRows(data), rotation);
+}
+
+Result<std::vector<Station>> StationsAt(const Measurements& data, const Setup& setup) {
+  std::vector<Station> stations = data.stations;
+  for (Station& station : stations) {
+    Eigen::Matrix3Xd on_artifact(3, Balls(station)), in_base = on_artifact;
+    Index k = 0;
+    for (const Model::View& view : station.views) {
+      const Isometry3d scanner = BaseFromScanner(data, setup, view);
+      for (const Model::SeenBall& ball : view.balls) {
+        on_artifact.col(k) = data.spheres[ball.sphere].centre;
+        in_base.col(k++) = scanner * ball.centre;
+      }
+    }
+    if (OnALine(on_artifact))
+      return Error{fmt::format(
+          "station {}: the balls that are seen there lie on a line of the artifact: its pose is not determined; see "
+          "three balls that do not",
+          station.name)};
+    station.base_from_artifact.matrix() = Eigen::umeyama(on_artifact, in_base, false);
+  }
+  return stations;
+}
+
+}  // namespace scancal::robot_ball

@@ -1,0 +1,93 @@
+#include "models/scanner.h"
+#include <fmt/format.h>
+#include "io/message.h"
+#include "io/progress.h"
+
+namespace scancal {
+
+Result<Comparison> Scanner::Compare(const CompareChoice&) const {
+  return Error{"compare: the model " + dataset().model + " has no other methods to be compared with"};
+}
+
+Result<void> Scanner::WriteSurface(const std::filesystem::path&) const {
+  return Error{"surface: the model " + dataset().model + " searches no grid, expected a data set of one that does"};
+}
+
+Result<Propagation> ScannerKind::Propagate(const Calibration& calibration, const PointRequest& points,
+                                           bool distances) const {
+  if (propagate) return propagate(calibration, points, distances);
+  return Error{std::string("propagate: the model ") + name +
+               " gives no uncertainty of single points, expected a calibration of one that does"};
+}
+
+Error InFile(const Dataset& dataset, const std::string& sentence) { return {dataset.file.string() + ": " + sentence}; }
+
+double UnitFactor(Unit unit, const Units& units) {
+  return units.Of(unit == Unit::kMm ? Dimension::kLength : unit == Unit::kRad ? Dimension::kAngle : Dimension::kNone);
+}
+
+Result<int> SetDeclared(const ParameterSetting& setting, const Dataset& dataset, std::vector<std::string> others,
+                        int without_nominal, std::span<Quantity> quantities) {
+  const std::string place = "parameters: " + setting.name + ": ";
+  int index = -1;
+  for (int k = 0; k < std::ssize(quantities); ++k) {
+    if (quantities[k].scope != Scope::kSystem) continue;
+    if (quantities[k].name == setting.name) index = k;
+    others.push_back(quantities[k].name);
+  }
+  if (index < 0) return InFile(dataset, place + "unknown parameter" + Suggestion(setting.name, others));
+  Quantity& quantity = quantities[index];
+  quantity.role = setting.role == "estimate"   ? Role::kEstimate
+                  : setting.role == "consider" ? Role::kConsider
+                                               : Role::kHold;
+  const double unit = UnitFactor(quantity.unit, dataset.units);
+  quantity.value = setting.value.value_or(0) * unit;
+  quantity.u = setting.u * unit;
+  if (index < without_nominal && quantity.role != Role::kEstimate && !setting.value)
+    return InFile(dataset, place + setting.role + ": expected its value, for example {" + setting.role + ": 123}");
+  return index;
+}
+
+std::string Opening(const Dataset& dataset, const std::string& kind) {
+  return fmt::format("{}: {}, lengths in {}, angles in {}",
+                     dataset.name.empty() ? dataset.file.parent_path().filename().string() : dataset.name, kind,
+                     dataset.units.length, dataset.units.angle);
+}
+
+Result<void> CheckOnlyResidual(const RefineChoice& choice, const std::string& what) {
+  if (choice.residual.empty() || choice.residual == "depth") return {};
+  return Error{"residual: found \"" + choice.residual + "\", but the only one of this model is " + what};
+}
+
+Result<void> CheckMonteCarlo(const RefineChoice& choice, bool weighted) {
+  if (weighted || choice.monte_carlo.trials == 0) return {};
+  return Error{"montecarlo: found equal weights, expected estimated ones: only they say how large all noise is"};
+}
+
+Result<void> CheckDetermined(const Observability& seen, const UndeterminedWords& words) {
+  if (!seen.undetermined_targets.empty())
+    return Error{words.target + (" " + Listed(seen.undetermined_targets)) + ": " + words.of_target};
+  if (!seen.undetermined.empty())
+    return Error{Listed(seen.undetermined) + ": not determined by " + words.by + "; hold " +
+                 (seen.undetermined.size() == 1 ? "it" : "one of them") + " or give a prior, {estimate: 0, u: ...}"};
+  return {};
+}
+
+double Stopwatch::Seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+}
+
+Calibration Conclude(const Dataset& dataset, const Refined& refined, const MonteCarloChoice& monte_carlo) {
+  Calibration result = Summarize(refined.solution, refined.pure_error);
+  Progress progress("Monte Carlo");
+  AddResampling(
+      refined.solution, monte_carlo, [&](double done) { progress.Show(done); }, &result);
+  result.model = dataset.model;
+  result.name = dataset.name;
+  result.residual = refined.residual;
+  result.seconds = refined.seconds;
+  result.warnings.insert(result.warnings.begin(), refined.warnings.begin(), refined.warnings.end());
+  return result;
+}
+
+}  // namespace scancal
