@@ -99,7 +99,7 @@ struct Measurements {
 };
 
 // What a method finds.
-struct Setup {
+struct Kinematics {
   Eigen::Isometry3d flange_from_scanner = Eigen::Isometry3d::Identity();
   std::vector<Link> link_errors;  // added to the nominal; one a link
 };

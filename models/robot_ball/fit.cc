@@ -10,7 +10,7 @@ namespace {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 // values: one per quantity of the model.
-Setup SetupOf(const std::vector<double>& values, size_t joints) {
+Kinematics KinematicsOf(const std::vector<double>& values, size_t joints) {
   const auto errors =
       Eigen::VectorXd::Map(values.data() + Model::kLinks, kLinkNumbers * static_cast<Eigen::Index>(joints));
   return {PoseOf(Vector6d::Map(&values[Model::kHandEye])), LinksOf(errors)};
@@ -24,7 +24,7 @@ Result<JointFit> FitJointly(const Measurements& data, const Model& model, const 
   for (const Quantity& quantity : model.quantities()) start.push_back(quantity.value);
   Vector6d::Map(&start[Model::kHandEye]) = NumbersOf(hand_eye);
   JointFit fit;
-  SCANCAL_ASSIGN_OR_RETURN(fit.stations, StationsAt(data, SetupOf(start, data.links.size())));
+  SCANCAL_ASSIGN_OR_RETURN(fit.stations, StationsAt(data, KinematicsOf(start, data.links.size())));
   Problem problem = MakeProblem<Model>(std::make_shared<const Model>(model), fit.stations);
   problem.WeighEqually(data.usual_ball_noise > 0 ? data.usual_ball_noise : 1);
   Estimate from = NominalStart(problem);
@@ -38,8 +38,8 @@ Result<JointFit> FitJointly(const Measurements& data, const Model& model, const 
   return fit;
 }
 
-Setup JointFit::Found() const {
-  return SetupOf(Values(solution.problem, solution.fit.estimate, 0), stations.front().views.front().joints.size());
+Kinematics JointFit::Found() const {
+  return KinematicsOf(Values(solution.problem, solution.fit.estimate, 0), stations.front().views.front().joints.size());
 }
 
 Eigen::Isometry3d JointFit::BaseFromArtifact(size_t station) const {
@@ -52,7 +52,7 @@ Eigen::Isometry3d JointFit::BaseFromArtifact(size_t station) const {
   return pose;
 }
 
-Gauged InDefaultGauge(const std::vector<Link>& nominal, const Setup& truth) {
+Gauged InDefaultGauge(const std::vector<Link>& nominal, const Kinematics& truth) {
   CHECK_EQ(truth.link_errors.size(), nominal.size());
   CHECK(!nominal.empty());
   Gauged gauged{truth, Eigen::Isometry3d::Identity()};

@@ -9,7 +9,7 @@ namespace scancal::robot_ball {
 struct JointFit {
   std::vector<Station> stations;  // as they entered: the poses from which artifact_x .. _rz count
   Solution solution;
-  Setup Found() const;
+  Kinematics Found() const;
   Eigen::Isometry3d BaseFromArtifact(size_t station) const;
 };
 
@@ -24,13 +24,13 @@ Result<JointFit> FitJointly(const Measurements& data, const Model& model, const 
                             int max_iterations = 100);
 
 struct Gauged {
-  Setup setup;
+  Kinematics setup;
   Eigen::Isometry3d base_from_true_base;  // the base that these numbers are told in
 };
 
 // The numbers that a calibration with the default roles of the links finds of a robot with these errors: theta_1 and
 // d_1 go into the base, all of the last link into the hand-eye, d before a parallel axis into the next d. Every ball is
 // seen as before; exact but for the last, where a beta before it is not zero (second order).
-Gauged InDefaultGauge(const std::vector<Link>& nominal, const Setup& truth);
+Gauged InDefaultGauge(const std::vector<Link>& nominal, const Kinematics& truth);
 
 }  // namespace scancal::robot_ball

@@ -248,7 +248,7 @@ struct OffPose {
 };
 
 std::vector<OffPose> ByPose(const Measurements& data, const JointFit& fit) {
-  const Setup setup = fit.Found();
+  const Kinematics setup = fit.Found();
   std::vector<OffPose> poses;
   for (size_t t = 0; t < data.stations.size(); ++t) {
     const Eigen::Isometry3d base_from_artifact = fit.BaseFromArtifact(t);

@@ -57,7 +57,6 @@ bool WithinLimits(const std::vector<double>& joints) {
 }
 
 }  // namespace
-#include "io/units.h"
 
 std::vector<Link> Kr10Links() {
   constexpr double kQuarter = 90 * kDegree;

@@ -112,11 +112,11 @@ constexpr size_t kMostPositions = 12;  // that fit into a line
 
 struct Method {
   const char* name;
-  std::function<Result<Setup>()> find;
+  std::function<Result<Kinematics>()> find;
 };
 
 // Distance of the balls from where the artifact of their station puts them, once every station stands at its best.
-Result<double> Misclosure(const Measurements& data, const Setup& setup) {
+Result<double> Misclosure(const Measurements& data, const Kinematics& setup) {
   SCANCAL_ASSIGN_OR_RETURN(const std::vector<Station> stations, StationsAt(data, setup));
   double squares = 0, count = 0;
   for (const Station& station : stations) {
@@ -136,7 +136,7 @@ ComparisonRow RowOf(const Measurements& data, const Method& method) {
   ComparisonRow row{method.name, {}, ""};
   Progress progress(method.name);
   const Stopwatch watch;
-  const Result<Setup> setup = method.find();
+  const Result<Kinematics> setup = method.find();
   const double seconds = watch.Seconds();
   const Result<double> misclosure = setup.ok() ? Misclosure(data, *setup) : Result<double>(setup.error());
   if (!misclosure.ok()) {
@@ -169,38 +169,38 @@ Measurements VirtualPoints(const Measurements& data) {
   return points;
 }
 
-Result<Setup> VirtualPointHandEye(const Measurements& data) {
+Result<Kinematics> VirtualPointHandEye(const Measurements& data) {
   const Measurements points = VirtualPoints(data);
   const std::optional<Matrix3d> rotation = RotationOfTranslating(points);
   if (!rotation) return InitialHandEye(data);
-  Setup setup;
+  Kinematics setup;
   setup.flange_from_scanner.linear() = *rotation;
   SCANCAL_ASSIGN_OR_RETURN(setup.flange_from_scanner.translation(), HandEyeTranslation(points, *rotation));
   setup.link_errors.resize(data.links.size());
   return setup;
 }
 
-Result<Setup> Ren2012(const Measurements& data) {
+Result<Kinematics> Ren2012(const Measurements& data) {
   Measurements one = data;
   one.stations = {MostSeenSphere(data)};
-  Result<Setup> first = VirtualPointHandEye(one);
+  Result<Kinematics> first = VirtualPointHandEye(one);
   if (!first.ok()) first = InitialHandEye(data);
   if (!first.ok()) return first;
   return IdentifyByDistances(one, *first, Identified::kHandEye);
 }
 
-Result<Setup> Mu2017(const Measurements& data) {
-  SCANCAL_ASSIGN_OR_RETURN(const Setup first, VirtualPointHandEye(data));
+Result<Kinematics> Mu2017(const Measurements& data) {
+  SCANCAL_ASSIGN_OR_RETURN(const Kinematics first, VirtualPointHandEye(data));
   return IdentifyByDistances(data, first, Identified::kHandEyeAndLinks);
 }
 
-Result<Setup> Zhou2025(const Measurements& data) {
+Result<Kinematics> Zhou2025(const Measurements& data) {
   const Measurements adjusted = AdjustCentres(data);
-  SCANCAL_ASSIGN_OR_RETURN(const Setup first, VirtualPointHandEye(adjusted));
+  SCANCAL_ASSIGN_OR_RETURN(const Kinematics first, VirtualPointHandEye(adjusted));
   return IdentifyByDistances(adjusted, first, Identified::kHandEyeAndLinks);
 }
 
-std::vector<double> SpacingErrors(const Measurements& data, const Setup& setup) {
+std::vector<double> SpacingErrors(const Measurements& data, const Kinematics& setup) {
   const auto in_base = [&](const Model::View& view) -> Eigen::Vector3d {
     return BaseFromScanner(data, setup, view) * view.balls[0].centre;
   };
@@ -222,8 +222,8 @@ Result<Comparison> Scanner::Compare(const CompareChoice&) const {
                                        {"Ren 2012, single sphere", [&] { return Ren2012(data); }},
                                        {"Mu 2017, distances", [&] { return Mu2017(data); }},
                                        {"Zhou 2025, corrected distances", [&] { return Zhou2025(data); }},
-                                       {"joint refinement", [&]() -> Result<Setup> {
-                                          SCANCAL_ASSIGN_OR_RETURN(const Setup start, InitialHandEye(data));
+                                       {"joint refinement", [&]() -> Result<Kinematics> {
+                                          SCANCAL_ASSIGN_OR_RETURN(const Kinematics start, InitialHandEye(data));
                                           SCANCAL_ASSIGN_OR_RETURN(const JointFit fit,
                                                                    FitJointly(data, model_, start.flange_from_scanner));
                                           return fit.Found();

@@ -12,11 +12,11 @@ namespace scancal::robot_ball {
 // baseline: all distances weigh alike, and repeatability enters them unseen. Where all balls are of the same noise, it
 // is no better than Mu2017 on simulated data (spacing errors within 5 %): the many distances average what the
 // correction takes away. It is better where some balls are worse, and SeenBall::spread says so.
-Result<Setup> Zhou2025(const Measurements& data);
+Result<Kinematics> Zhou2025(const Measurements& data);
 
 // Mu et al., Opt. Eng. 2017, 56, 054103, as Zhou et al. 2025 compare with it: hand-eye and link errors from distances
 // (IdentifyByDistances), the measured centres as they are: Zhou2025 without its correction.
-Result<Setup> Mu2017(const Measurements& data);
+Result<Kinematics> Mu2017(const Measurements& data);
 
 // Ren, Yin, Zhu, Opt. Eng. 2012, 51, 114204, as Zhou et al. 2025 compare with it: the hand-eye from a single sphere,
 // links nominal: of the sphere that one station sees most often, the centre stands still in the base. First from eqs.
@@ -24,7 +24,7 @@ Result<Setup> Mu2017(const Measurements& data);
 // of its scatter, which does not know the artifact.
 //
 // Error: no sphere is seen twice, or the poses do not move enough for a start.
-Result<Setup> Ren2012(const Measurements& data);
+Result<Kinematics> Ren2012(const Measurements& data);
 
 // The virtual point, eq. (5): the data with one ball a pose, the barycentre of the four balls, or fewer, that all poses
 // of its station see. Where no ball is seen in all poses, the poses that see the most seen ball have a point, and so on
@@ -41,7 +41,7 @@ Measurements VirtualPoints(const Measurements& data);
 //
 // Few data sets hold poses that only translate; without them, or if they move along one line, InitialHandEye takes
 // over, with all balls.
-Result<Setup> VirtualPointHandEye(const Measurements& data);
+Result<Kinematics> VirtualPointHandEye(const Measurements& data);
 
 // Measured ball centres corrected by what a CMM knows of the artifact: eqs. (8)-(20).
 struct CentreAdjustment {
@@ -90,10 +90,10 @@ enum class Identified { kHandEye, kHandEyeAndLinks };
 //
 // Errors: fewer distances than unknowns; no minimum reached. What the distances do not determine stays near the start.
 // One distance enters many pairs, and they are not independent: not the best estimate, and no uncertainty comes of it.
-Result<Setup> IdentifyByDistances(const Measurements& data, const Setup& start, Identified identified);
+Result<Kinematics> IdentifyByDistances(const Measurements& data, const Kinematics& start, Identified identified);
 
 // The error of sphere spacings that took no part in the calibration, after VDI/VDE 2634-3: |p_a - p_b| in the base
 // minus the CMM's distance, mm, one per Measurements::check.
-std::vector<double> SpacingErrors(const Measurements& data, const Setup& setup);
+std::vector<double> SpacingErrors(const Measurements& data, const Kinematics& setup);
 
 }  // namespace scancal::robot_ball

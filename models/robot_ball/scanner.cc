@@ -19,7 +19,7 @@ Eigen::Vector3d MeanOf(const std::vector<Model::SeenBall>& balls) {
 void AddResiduals(const Measurements& data, const JointFit& fit, size_t t, TargetSummary* target) {
   const Station& station = fit.stations[t];
   const std::vector<Eigen::VectorXd> residuals = ResidualsOf(fit.solution, t);
-  const Setup setup = fit.Found(), flange{Eigen::Isometry3d::Identity(), setup.link_errors};
+  const Kinematics setup = fit.Found(), flange{Eigen::Isometry3d::Identity(), setup.link_errors};
   NumberTable poses = PoseTable(data.links.size(), {{"balls", Unit::kOne}, {"rms", Unit::kMm}}),
               balls = PointResidualTable();
   for (size_t v = 0; v < station.views.size(); ++v) {
@@ -72,7 +72,7 @@ void AddGeometry(const JointFit& fit, Calibration* result) {
   }
 }
 
-void AddCheck(const Measurements& data, const Setup& before, const Setup& after, Calibration* result) {
+void AddCheck(const Measurements& data, const Kinematics& before, const Kinematics& after, Calibration* result) {
   for (const CheckLength& length : data.check) {
     result->check.names.push_back(length.name);
     result->check.u.push_back(length.u);
@@ -89,7 +89,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
     return Error{
         "weights: found equal, but the balls of a pose share its repeatability: they cannot be weighed equally"};
   const Measurements& data = declaration_.data;
-  SCANCAL_ASSIGN_OR_RETURN(const Setup start, InitialHandEye(data));
+  SCANCAL_ASSIGN_OR_RETURN(const Kinematics start, InitialHandEye(data));
   const Stopwatch watch;
   SCANCAL_ASSIGN_OR_RETURN(const JointFit fit,
                            FitJointly(data, model_, start.flange_from_scanner, choice.max_iterations));
@@ -100,7 +100,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   Calibration result = Conclude(declaration_.dataset, refined, choice.monte_carlo);
   AddGeometry(fit, &result);
   AddTables(data, fit, &result);
-  SCANCAL_ASSIGN_OR_RETURN(const Setup before, VirtualPointHandEye(data));
+  SCANCAL_ASSIGN_OR_RETURN(const Kinematics before, VirtualPointHandEye(data));
   AddCheck(data, before, fit.Found(), &result);
   Judge(data, fit, &result);
   return result;

@@ -104,7 +104,7 @@ class Simulation {
   const Scene& scene_;
   std::vector<Model::Sphere> spheres_;  // truth
   Measurements data_;                   // nominal links
-  Setup truth_;
+  Kinematics truth_;
 };
 
 std::vector<Model::Sphere> Simulation::MeasuredSpheres() const {
@@ -306,7 +306,7 @@ Json Matrix(const Eigen::Isometry3d& pose) {
   return rows;
 }
 
-Json SetupJson(const Setup& setup) {
+Json KinematicsJson(const Kinematics& setup) {
   Json json = {{"hand_eye", Matrix(setup.flange_from_scanner)}, {"link_errors", Json::object()}};
   Quantities names;
   DeclareLinks(setup.link_errors.size(), &names);
@@ -317,8 +317,8 @@ Json SetupJson(const Setup& setup) {
 
 Json Truth(const Scene& scene, const Simulated& robot) {
   Json truth = {{"units", "mm, rad"}};
-  truth.update(SetupJson(robot.truth));
-  truth["as_default_roles_find_it"] = SetupJson(InDefaultGauge(robot.data.links, robot.truth).setup);
+  truth.update(KinematicsJson(robot.truth));
+  truth["as_default_roles_find_it"] = KinematicsJson(InDefaultGauge(robot.data.links, robot.truth).setup);
   truth["repeatability"] = scene.repeatability;
   truth["ball"] = scene.ball_noise;
   truth["artifact"] = scene.u_spheres;

@@ -60,7 +60,7 @@ struct Scene {
 
 struct Simulated {
   Measurements data;
-  Setup truth;
+  Kinematics truth;
   std::vector<Eigen::Isometry3d> base_from_artifact;  // truth, one a station
 };
 

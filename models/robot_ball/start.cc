@@ -142,17 +142,17 @@ bool OnALine(const MatrixXd& points) {
 
 }  // namespace
 
-Isometry3d BaseFromScanner(const Measurements& data, const Setup& setup, const Model::View& view) {
+Isometry3d BaseFromScanner(const Measurements& data, const Kinematics& setup, const Model::View& view) {
   CHECK(setup.link_errors.empty() || setup.link_errors.size() == data.links.size());
   const std::vector<Link> links = WithErrors(data.links, setup.link_errors);
   return view.base_from_flange * BaseFromFlange(links, view.joints) * setup.flange_from_scanner;
 }
 
-Result<Setup> InitialHandEye(const Measurements& data) {
+Result<Kinematics> InitialHandEye(const Measurements& data) {
   const MatrixXd rows = AllRows(data);
   SCANCAL_ASSIGN_OR_RETURN(const Matrix3d rotation, Rotation(data.stations, rows));
   SCANCAL_ASSIGN_OR_RETURN(const Vector3d translation, Translation(data.stations, rows, rotation));
-  Setup setup;
+  Kinematics setup;
   setup.flange_from_scanner.linear() = rotation;
   setup.flange_from_scanner.translation() = translation;
   setup.link_errors.resize(data.links.size());
@@ -163,7 +163,7 @@ Result<Vector3d> HandEyeTranslation(const Measurements& data, const Matrix3d& ro
   return Translation(data.stations, AllRows(data), rotation);
 }
 
-Result<std::vector<Station>> StationsAt(const Measurements& data, const Setup& setup) {
+Result<std::vector<Station>> StationsAt(const Measurements& data, const Kinematics& setup) {
   std::vector<Station> stations = data.stations;
   for (Station& station : stations) {
     Eigen::Matrix3Xd on_artifact(3, Balls(station)), in_base = on_artifact;

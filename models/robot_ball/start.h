@@ -8,7 +8,7 @@
 namespace scancal::robot_ball {
 
 // base_from_flange(q; nominal + errors) flange_from_scanner, eqs. (1)-(2) of Zhou et al. 2025. No errors: nominal.
-Eigen::Isometry3d BaseFromScanner(const Measurements& data, const Setup& setup, const Model::View& view);
+Eigen::Isometry3d BaseFromScanner(const Measurements& data, const Kinematics& setup, const Model::View& view);
 
 // flange_from_scanner with nominal links, for any data set: no start, no poses that only translate, and a pose may see
 // any number of balls. The model of all poses j and balls b of all stations s,
@@ -23,13 +23,13 @@ Eigen::Isometry3d BaseFromScanner(const Measurements& data, const Setup& setup, 
 // do not turn, or turn about one axis, which leaves t open along it. The sentences name the stations.
 //
 // Not a least-squares estimate: R and N are rotations only afterwards. That costs little and needs no start.
-Result<Setup> InitialHandEye(const Measurements& data);
+Result<Kinematics> InitialHandEye(const Measurements& data);
 
 // Only the translation, eq. (6), the rotation being known. Errors: poses that do not turn, or turn about one axis.
 Result<Eigen::Vector3d> HandEyeTranslation(const Measurements& data, const Eigen::Matrix3d& rotation);
 
 // The stations with base_from_artifact set: all balls of a station, carried into the base, fitted by the artifact
 // (Umeyama 1991). Error: a station where the seen balls lie on a line.
-Result<std::vector<Station>> StationsAt(const Measurements& data, const Setup& setup);
+Result<std::vector<Station>> StationsAt(const Measurements& data, const Kinematics& setup);
 
 }  // namespace scancal::robot_ball

@@ -78,8 +78,8 @@ Declaration Parsed(const Json& json) {
   return result;
 }
 
-Result<Setup> SetupOf(const Calibration& calibration, size_t links) {
-  Setup setup;
+Result<Kinematics> KinematicsOf(const Calibration& calibration, size_t links) {
+  Kinematics setup;
   SCANCAL_ASSIGN_OR_RETURN(
       const Eigen::VectorXd hand_eye,
       ValuesOf(calibration, {"hand_eye_x", "hand_eye_y", "hand_eye_z", "hand_eye_rx", "hand_eye_ry", "hand_eye_rz"}));
@@ -139,7 +139,7 @@ Result<std::unique_ptr<scancal::Scanner>> Reload(const Dataset& dataset, const J
 Result<int64_t> Transform(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud) {
   SCANCAL_ASSIGN_OR_RETURN(const Declaration declaration, Declare(dataset));
   const Measurements& data = declaration.data;
-  SCANCAL_ASSIGN_OR_RETURN(const Setup setup, SetupOf(calibration, data.links.size()));
+  SCANCAL_ASSIGN_OR_RETURN(const Kinematics setup, KinematicsOf(calibration, data.links.size()));
   int64_t points = 0;
   for (size_t t = 0; t < data.stations.size(); ++t) {
     std::vector<std::array<double, 3>> in_base;

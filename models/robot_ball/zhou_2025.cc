@@ -231,14 +231,14 @@ class Distances {
   int rows_ = 0;
 };
 
-VectorXd AsNumbers(const Measurements& data, const Setup& setup) {
+VectorXd AsNumbers(const Measurements& data, const Kinematics& setup) {
   VectorXd q = VectorXd::Zero(6 + kLinkNumbers * std::ssize(data.links));
   q.head<6>() = NumbersOf(setup.flange_from_scanner);
   q.segment(6, kLinkNumbers * std::ssize(setup.link_errors)) = NumbersOf(setup.link_errors);
   return q;
 }
 
-Setup AsSetup(const VectorXd& q) { return {PoseOf(q.head<6>()), LinksOf(q.tail(q.size() - 6))}; }
+Kinematics AsKinematics(const VectorXd& q) { return {PoseOf(q.head<6>()), LinksOf(q.tail(q.size() - 6))}; }
 
 }  // namespace
 
@@ -291,7 +291,7 @@ Measurements AdjustCentres(Measurements data) {
   return data;
 }
 
-Result<Setup> IdentifyByDistances(const Measurements& data, const Setup& start, Identified identified) {
+Result<Kinematics> IdentifyByDistances(const Measurements& data, const Kinematics& start, Identified identified) {
   Distances distances(data, AsNumbers(data, start), identified);
   if (distances.values() < distances.inputs())
     return Error{
@@ -309,7 +309,7 @@ Result<Setup> IdentifyByDistances(const Measurements& data, const Setup& start, 
         fmt::format("the distances of the balls have no minimum near the first hand-eye (rms {:.3g} mm after "
                     "{} evaluations): look for swapped balls or poses",
                     solver.fnorm / std::sqrt(distances.values()), solver.nfev)};
-  return AsSetup(distances.All(x));
+  return AsKinematics(distances.All(x));
 }
 
 }  // namespace scancal::robot_ball

@@ -73,7 +73,7 @@ Joint MakeJoint() {
   joint.scene = Scene(8, 8);
   joint.scene.field = kWholeArtifact;
   joint.data = robot_ball::Simulate(joint.scene).data;
-  const Result<robot_ball::Setup> start = InitialHandEye(joint.data);
+  const Result<robot_ball::Kinematics> start = InitialHandEye(joint.data);
   CHECK(start.ok()) << start.error().message;
   Result<std::vector<robot_ball::Station>> stations = StationsAt(joint.data, *start);
   CHECK(stations.ok()) << stations.error().message;
@@ -142,7 +142,7 @@ void CompareWithScipy(const std::filesystem::path& script, const std::filesystem
   const double refine_s = MedianSecondsOf([&] { fit = Refine(joint.problem, joint.from); });
   CHECK(fit.converged) << fit.message;
   const auto whole = [&] {
-    const Result<robot_ball::Setup> start = InitialHandEye(joint.data);
+    const Result<robot_ball::Kinematics> start = InitialHandEye(joint.data);
     CHECK(start.ok() && robot_ball::FitJointly(joint.data, *joint.model, start->flange_from_scanner).ok());
   };
   const double whole_s = MedianSecondsOf(whole);
@@ -176,7 +176,7 @@ double FitSeconds(const robot_ball::Measurements& data, const robot_ball::Scene&
   robot_ball::Model model(data.links, data.spheres);
   DeclareNoise(scene, &model);
   return SecondsOf([&] {
-    const Result<robot_ball::Setup> start = InitialHandEye(data);
+    const Result<robot_ball::Kinematics> start = InitialHandEye(data);
     CHECK(start.ok()) << start.error().message;
     const Result<robot_ball::JointFit> fit = robot_ball::FitJointly(data, model, start->flange_from_scanner);
     CHECK(fit.ok()) << fit.error().message;

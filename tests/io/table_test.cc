@@ -18,7 +18,7 @@ class TableTest : public ::testing::Test {
   Result<Table> Read(const std::string& text) {
     return Table::Read(folder_.Write("t.csv", text),
                        {{"ball"},
-                        {"x", Cells::kNumber, Dimension::kLength},
+                        {"x", Cells::kNumber, Dimension::kLength, true, "; name it x"},
                         {"q1", Cells::kNumber, Dimension::kAngle, false},
                         {"u", Cells::kNumberOrNothing, Dimension::kLength, false},
                         {"note", Cells::kText, Dimension::kNone, false}},
@@ -115,7 +115,8 @@ TEST_F(TableTest, EveryLineHasAsManyCells) {
 }
 
 TEST_F(TableTest, HeadersAreChecked) {
-  EXPECT_THAT(Error("ball,y\nA,1\n"), HasSubstr("t.csv:1: found the columns ball, y, expected also 'x' (or x_mm, _m"));
+  EXPECT_THAT(Error("ball,y\nA,1\n"),
+              EndsWith("t.csv:1: found the columns ball, y, expected also 'x' (or x_mm, _m, _um); name it x"));
   EXPECT_THAT(Error("ball;x\nA;1\n"), HasSubstr("semicolons"));
   EXPECT_THAT(Error("ball,x,x_mm\nA,1,1\n"), HasSubstr("the column 'x' twice"));
   EXPECT_THAT(Error(""), HasSubstr("the file is empty"));

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include "io/units.h"
 #include "models/robot_ball.h"
 #include "models/sphere.h"
 #include "solver/model.h"

@@ -28,7 +28,7 @@ std::vector<Vector3d> CapOf(const Vector3d& centre, Random* random) {
 }
 
 // One sphere through the points of all poses that see the first pose's first ball.
-double Radius(const robot_ball::Measurements& data, const robot_ball::Setup& setup, uint64_t seed) {
+double Radius(const robot_ball::Measurements& data, const robot_ball::Kinematics& setup, uint64_t seed) {
   constexpr uint64_t kPointStream = uint64_t{5} << 32;
   Random random(seed, kPointStream);
   const std::vector<robot_ball::Model::View>& views = data.stations.front().views;
@@ -70,7 +70,7 @@ std::vector<Reconstruction> StudyConfigurations(const robot_ball::Scene& scene, 
     const robot_ball::Measurements evaluated = robot_ball::Simulate(other).data;
     for (Reconstruction& result : results) {
       own.configuration = result.configuration;
-      const Result<robot_ball::Setup> setup = Ren2012(robot_ball::Simulate(own).data);
+      const Result<robot_ball::Kinematics> setup = Ren2012(robot_ball::Simulate(own).data);
       CHECK(setup.ok()) << "seed " << own.seed << ": " << setup.error().message;
       result.radius[static_cast<Eigen::Index>(set)] = Radius(evaluated, *setup, other.noise_seed);
     }

@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr double kNormal95 = 1.959964;
 
 // The estimated quantities of the system at this setup.
-VectorXd Estimated(const Quantities& quantities, const robot_ball::Setup& setup) {
+VectorXd Estimated(const Quantities& quantities, const robot_ball::Kinematics& setup) {
   std::vector<double> values(quantities.size());
   VectorXd::Map(&values[robot_ball::Model::kHandEye], 6) = robot_ball::NumbersOf(setup.flange_from_scanner);
   VectorXd::Map(&values[robot_ball::Model::kLinks], kLinkNumbers * std::ssize(setup.link_errors)) =
@@ -37,7 +37,7 @@ void WrapHandEye(const VectorXd& to, VectorXd* numbers) {
 }
 
 struct Truth {
-  robot_ball::Setup setup;
+  robot_ball::Kinematics setup;
   std::vector<robot_ball::Station> stations;
 };
 

@@ -10,18 +10,18 @@
 namespace scancal::robot_study {
 namespace {
 
-Result<robot_ball::Setup> Nominal(const robot_ball::Measurements& data) {
-  return robot_ball::Setup{robot_ball::DrawnHandEye(), std::vector<Link>(data.links.size())};
+Result<robot_ball::Kinematics> Nominal(const robot_ball::Measurements& data) {
+  return robot_ball::Kinematics{robot_ball::DrawnHandEye(), std::vector<Link>(data.links.size())};
 }
 
 // As published: from the poses of one place of the artifact.
-Result<robot_ball::Setup> FirstHandEye(robot_ball::Measurements data) {
+Result<robot_ball::Kinematics> FirstHandEye(robot_ball::Measurements data) {
   data.stations.resize(1);
   return VirtualPointHandEye(data);
 }
 
-Result<robot_ball::Setup> Refinement(const robot_ball::Measurements& data, const robot_ball::Scene& scene) {
-  SCANCAL_ASSIGN_OR_RETURN(const robot_ball::Setup start, InitialHandEye(data));
+Result<robot_ball::Kinematics> Refinement(const robot_ball::Measurements& data, const robot_ball::Scene& scene) {
+  SCANCAL_ASSIGN_OR_RETURN(const robot_ball::Kinematics start, InitialHandEye(data));
   SCANCAL_ASSIGN_OR_RETURN(const robot_ball::JointFit fit,
                            robot_ball::FitJointly(data, DeclaredModel(data, scene), start.flange_from_scanner));
   return fit.Found();
@@ -36,7 +36,8 @@ Mean MeanOf(const Eigen::VectorXd& values) {
 }
 
 std::vector<Method> StudyMethods(const robot_ball::Scene& scene, size_t sets, int threads) {
-  const std::vector<std::pair<std::string, std::function<Result<robot_ball::Setup>(const robot_ball::Measurements&)>>>
+  const std::vector<
+      std::pair<std::string, std::function<Result<robot_ball::Kinematics>(const robot_ball::Measurements&)>>>
       methods = {{"nominal", &Nominal},
                  {"Ren 2012", &robot_ball::Ren2012},
                  {"Mu 2017", &robot_ball::Mu2017},
@@ -52,7 +53,7 @@ std::vector<Method> StudyMethods(const robot_ball::Scene& scene, size_t sets, in
     own.noise_seed = scene.noise_seed + set;
     const robot_ball::Simulated robot = robot_ball::Simulate(own);
     for (size_t k = 0; k < methods.size(); ++k) {
-      const Result<robot_ball::Setup> setup = methods[k].second(robot.data);
+      const Result<robot_ball::Kinematics> setup = methods[k].second(robot.data);
       CHECK(setup.ok()) << methods[k].first << ", seed " << own.seed << ": " << setup.error().message;
       const ErrorSize spacing = SizeOfErrors(SpacingErrors(robot.data, *setup));
       results[k].max[static_cast<Eigen::Index>(set)] = spacing.max;

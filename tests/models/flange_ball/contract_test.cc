@@ -17,7 +17,7 @@ struct FlangeBallCase {
   static constexpr double kJointNoise = 1e-4, kSpacingU = 0.05, kPriorU = 0.05;
   static constexpr int kPriorOf = Model::kLinks + kLinkNumbers + 2;  // a_2
 
-  static Model Model(const Scene& scene) {
+  static Model ModelOf(const Scene& scene) {
     Model model(scene.nominal);
     model.quantity(Model::kSpacing).value = SceneChoice().spacing;
     return model;
@@ -31,7 +31,7 @@ struct FlangeBallCase {
       choice.spacing += kSpacingU * random.Normal();
     }
     Scene scene = MakeScene(choice);
-    Model model = Model(scene);
+    Model model = ModelOf(scene);
     const Eigen::VectorXd truth = TruthOf(scene, model);
     if (options.influences) {
       const auto consider = [&](int k, double u) {
@@ -90,7 +90,7 @@ struct FlangeBallCase {
     const auto scanner = (*FindScannerKind(*dataset))->load(*dataset);
     const auto result = (*scanner)->Calibrate({});
     EXPECT_TRUE(result.ok() && result->ok());
-    const Model model = Model(scene);
+    const Model model = ModelOf(scene);
     Eigen::VectorXd error = -TruthOf(scene, model);
     Eigen::Index e = 0;
     for (const std::string& name : result->estimated) error[e++] += result->Find(name)->value;
@@ -100,7 +100,7 @@ struct FlangeBallCase {
   // All tools may turn about the first axis together.
   static std::string Refusal() {
     const Scene scene = MakeScene({});
-    Model model = Model(scene);
+    Model model = ModelOf(scene);
     model.quantity(Model::kLinks).role = Role::kEstimate;
     const Result<Solution> solution = FitJointly(model, scene.tools);
     return solution.ok() ? "" : solution.error().message;

@@ -31,7 +31,7 @@ class FlangeBallDeclarationTest : public ::testing::Test {
     EXPECT_NE(at, std::string::npos) << from;
     folder_.Write("dataset.yaml", yaml.replace(at, from.size(), to));
     SCANCAL_ASSIGN_OR_RETURN(const Dataset dataset, ReadDataset(folder_.path()));
-    return Declare(dataset);
+    return flange_ball::Declare(dataset);
   }
   std::string ErrorOf(const std::string& from, const std::string& to) {
     const auto declaration = Declare(from, to);

@@ -167,7 +167,7 @@ class FlangeBallFilesTest : public ::testing::Test {
   const Scene scene_ = MakeScene({.seat = 0.3});
   const TemporaryFolder folder_;
   Dataset dataset_;
-  std::unique_ptr<Scanner> scanner_;
+  std::unique_ptr<scancal::Scanner> scanner_;
 };
 
 TEST_F(FlangeBallFilesTest, AResultIsRecomputedToTheLastDigit) {

@@ -22,7 +22,7 @@ struct RobotCase {
   static constexpr int kPriorOf = Model::kLinks + kLinkNumbers + 2;  // a_2
 
   // Errors only of what is estimated by default: the truth is then exact, whatever the gauge.
-  static Scene Scene(const ContractOptions& options) {
+  static Scene SceneOf(const ContractOptions& options) {
     Scene scene;
     scene.stations = 4;
     scene.poses = 6;
@@ -39,7 +39,7 @@ struct RobotCase {
     return scene;
   }
 
-  static Eigen::VectorXd Truth(const Quantities& quantities, const Setup& truth) {
+  static Eigen::VectorXd Truth(const Quantities& quantities, const Kinematics& truth) {
     std::vector<double> all(quantities.size());
     Vector6d::Map(&all[Model::kHandEye]) = NumbersOf(truth.flange_from_scanner);
     Eigen::VectorXd::Map(&all[Model::kLinks], kLinkNumbers * std::ssize(truth.link_errors)) =
@@ -58,7 +58,7 @@ struct RobotCase {
   }
 
   static ContractData Make(const ContractOptions& options) {
-    const Scene scene = Scene(options);
+    const Scene scene = SceneOf(options);
     Simulated robot = Simulate(scene);
     Model model = robot_study::DeclaredModel(
         robot.data, scene, options.influences ? robot_study::Noise::kDeclared : robot_study::Noise::kEstimated);
@@ -77,7 +77,7 @@ struct RobotCase {
       }
     }
     // From the truth moved a little: the same for any order.
-    Setup near = robot.truth;
+    Kinematics near = robot.truth;
     near.flange_from_scanner.translate(Eigen::Vector3d(0.3, -0.2, 0.1));
     const Result<std::vector<Station>> stations = StationsAt(robot.data, near);
     EXPECT_TRUE(stations.ok());
@@ -93,7 +93,7 @@ struct RobotCase {
 
   // The data as calibration.json keeps them, to the last digit.
   static Eigen::VectorXd RoundTrip(double noise) {
-    const Simulated robot = Simulate(Scene({noise, 1, true, false, false}));
+    const Simulated robot = Simulate(SceneOf({noise, 1, true, false, false}));
     Declaration written;
     written.data = robot.data;
     written.u_of_spheres.resize(robot.data.spheres.size());
@@ -101,7 +101,7 @@ struct RobotCase {
     EXPECT_TRUE(read.ok()) << read.error().message;
     read->data.links = robot.data.links;  // of dataset.yaml
     const Model model(read->data.links, read->data.spheres);
-    const Result<Setup> start = InitialHandEye(read->data);
+    const Result<Kinematics> start = InitialHandEye(read->data);
     const Result<JointFit> fit = FitJointly(read->data, model, start->flange_from_scanner);
     EXPECT_TRUE(fit.ok()) << fit.error().message;
     const Eigen::VectorXd truth = Truth(model.quantities(), robot.truth);
@@ -111,7 +111,7 @@ struct RobotCase {
   }
 
   static std::string Refusal() {
-    const Simulated robot = Simulate(Scene({}));
+    const Simulated robot = Simulate(SceneOf({}));
     Model model(robot.data.links, robot.data.spheres);
     model.quantity(Model::kLinks).role = Role::kEstimate;  // the base itself
     const Result<JointFit> fit = FitJointly(robot.data, model, robot.truth.flange_from_scanner);
@@ -136,14 +136,14 @@ TEST(RobotBallTest, DenseAndSparseEliminationAgree) {
 // Poses that see few balls and poses that see all, all in a plane, and correlated noise.
 TEST(RobotBallTest, FourBallsOfAPoseStandForAll) {
   for (const bool flat : {false, true}) {
-    Scene scene = RobotCase::Scene({});
+    Scene scene = RobotCase::SceneOf({});
     Simulated robot = Simulate(scene);
     if (flat)
       for (Model::Sphere& sphere : robot.data.spheres) sphere.centre[2] = 0.1 * sphere.centre[0] - 3;
     robot.data.stations[0].views[0].balls.resize(1);
     robot.data.stations[0].views[1].balls.resize(2);
     const Model model = robot_study::DeclaredModel(robot.data, scene, robot_study::Noise::kDeclared);
-    Setup near = robot.truth;
+    Kinematics near = robot.truth;
     near.flange_from_scanner.translate(Eigen::Vector3d(0.3, -0.2, 0.1));
     const Result<std::vector<Station>> stations = StationsAt(robot.data, near);
     ASSERT_TRUE(stations.ok()) << stations.error().message;
@@ -164,7 +164,7 @@ TEST(RobotBallTest, FourBallsOfAPoseStandForAll) {
 }
 
 TEST(RobotBallTest, SixJointsLeaveTwentyFourNumbersAndNoMore) {
-  const Scene scene = RobotCase::Scene({});
+  const Scene scene = RobotCase::SceneOf({});
   const Simulated robot = Simulate(scene);
   Model model(robot.data.links, robot.data.spheres);
   const auto estimated = [&] {
@@ -179,7 +179,7 @@ TEST(RobotBallTest, SixJointsLeaveTwentyFourNumbersAndNoMore) {
         model.quantity(Model::kLinks + kLinkNumbers * static_cast<int>(link) + e).role = Role::kEstimate;
   EXPECT_EQ(estimated(), 31);
   for (const bool at_truth : {true, false}) {  // and off the solution
-    Setup setup = robot.truth;
+    Kinematics setup = robot.truth;
     if (!at_truth) setup.flange_from_scanner.translate(Eigen::Vector3d(5, -3, 2));
     const Problem problem = MakeProblem(std::make_shared<const Model>(model), *StationsAt(robot.data, setup));
     Estimate at = NominalStart(problem);

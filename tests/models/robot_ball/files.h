@@ -68,7 +68,7 @@ class RobotFilesTest : public ::testing::Test {
     folder_.Write("balls.csv", Text(balls_));
     folder_.Write("artifact.csv", Text(artifact_));
     SCANCAL_ASSIGN_OR_RETURN(const Dataset dataset, ReadDataset(folder_.path()));
-    return Declare(dataset);
+    return robot_ball::Declare(dataset);
   }
   Declaration Declared() const {
     auto declaration = Declare();

@@ -18,11 +18,11 @@ TEST(FitJointly, StartsFromTheLinksOfTheModel) {
   constexpr int kLast = Model::kLinks + 5 * kLinkNumbers, kD = 1, kA = 2;
   model.quantity(kLast + kD).value = 20;             // held
   model.quantity(Model::kLinks + kA).value = 0.125;  // estimated
-  const Result<Setup> start = InitialHandEye(data);
+  const Result<Kinematics> start = InitialHandEye(data);
   ASSERT_TRUE(start.ok()) << start.error().message;
   const Result<JointFit> fit = FitJointly(data, model, start->flange_from_scanner);
   ASSERT_TRUE(fit.ok()) << fit.error().message;
-  Setup expected{start->flange_from_scanner, std::vector<Link>(6)};
+  Kinematics expected{start->flange_from_scanner, std::vector<Link>(6)};
   expected.link_errors[5].d = 20;
   expected.link_errors[0].a = 0.125;
   const auto stations = StationsAt(data, expected);

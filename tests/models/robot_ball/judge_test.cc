@@ -15,7 +15,7 @@ using ::testing::IsEmpty;
 
 // The doubts about these data, checked against `before`.
 std::vector<std::string> Doubts(const Measurements& data, const std::vector<double>& before) {
-  const Result<Setup> start = InitialHandEye(data);
+  const Result<Kinematics> start = InitialHandEye(data);
   const Result<JointFit> fit = FitJointly(data, Model(data.links, data.spheres), start->flange_from_scanner);
   EXPECT_TRUE(fit.ok()) << fit.error().message;
   Calibration calibration;

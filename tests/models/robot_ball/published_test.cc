@@ -25,7 +25,7 @@ Scene Determined() {
   return scene;
 }
 
-void ExpectNear(const Setup& found, const Setup& truth, double mm, double rad) {
+void ExpectNear(const Kinematics& found, const Kinematics& truth, double mm, double rad) {
   const Eigen::Matrix<double, 6, 1> off = NumbersOf(found.flange_from_scanner) - NumbersOf(truth.flange_from_scanner);
   EXPECT_LT(off.head<3>().norm(), mm);
   EXPECT_LT(off.tail<3>().norm(), rad);
@@ -43,7 +43,7 @@ void ExpectNear(const Setup& found, const Setup& truth, double mm, double rad) {
 TEST(Zhou2025, RecoversHandEyeAndLinksFromNoiselessData) {
   const auto [data, truth, stations] = Simulate(Determined());
   for (const auto& method : {Zhou2025, Mu2017}) {
-    const Result<Setup> found = method(data);
+    const Result<Kinematics> found = method(data);
     ASSERT_TRUE(found.ok()) << found.error().message;
     ExpectNear(*found, truth, 1e-6, 1e-9);
     EXPECT_LT(SizeOfErrors(SpacingErrors(data, *found)).max, 1e-7);
@@ -56,7 +56,7 @@ TEST(Zhou2025, WhatIsAbsorbedElsewhereDoesNotShowInDistances) {
   Scene scene = WithoutNoise({});  // theta_1, d_1 and the last link as well
   scene.link_errors[1].d = 0.3;    // as much of d_3
   const auto [data, truth, stations] = Simulate(scene);
-  const Result<Setup> found = Zhou2025(data);
+  const Result<Kinematics> found = Zhou2025(data);
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_LT(SizeOfErrors(SpacingErrors(data, *found)).max, 1e-6);
   EXPECT_EQ(found->link_errors[0].theta, 0);
@@ -73,7 +73,7 @@ TEST(Zhou2025, PosesOfTheControllerLeaveOnlyTheHandEye) {
       view.joints.clear();
     }
   data.links.clear();
-  const Result<Setup> found = Zhou2025(data);
+  const Result<Kinematics> found = Zhou2025(data);
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_TRUE(found->link_errors.empty());
   EXPECT_TRUE(found->flange_from_scanner.isApprox(PublishedHandEye(), 1e-9));
@@ -87,7 +87,7 @@ TEST(Zhou2025, TheOrderOfStationsPosesAndBallsDoesNotMatter) {
     std::ranges::reverse(station.views);
     for (Model::View& view : station.views) std::ranges::reverse(view.balls);
   }
-  const Result<Setup> one = Zhou2025(data), other = Zhou2025(turned);
+  const Result<Kinematics> one = Zhou2025(data), other = Zhou2025(turned);
   ASSERT_TRUE(one.ok() && other.ok());
   ExpectNear(*one, *other, 1e-5, 1e-8);
 }
@@ -112,7 +112,7 @@ TEST(Ren2012, RecoversTheHandEyeFromOneSphere) {
   scene.link_errors.assign(6, {});
   Measurements data = Simulate(scene).data;
   for (Model::Sphere& sphere : data.spheres) sphere.centre *= 3;  // the artifact does not matter
-  const Result<Setup> found = Ren2012(data);
+  const Result<Kinematics> found = Ren2012(data);
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_TRUE(found->flange_from_scanner.isApprox(PublishedHandEye(), 1e-9));
   EXPECT_EQ(found->link_errors.size(), 6u);
@@ -125,7 +125,7 @@ TEST(Ren2012, IsTheLeastSquaresOfTheSpheresScatter) {
   scene.field = 1e6;
   Measurements data = Simulate(scene).data;
   for (Model::View& view : data.stations[0].views) view.balls.resize(1);
-  const Result<Setup> found = Ren2012(data);
+  const Result<Kinematics> found = Ren2012(data);
   ASSERT_TRUE(found.ok()) << found.error().message;
   const auto scatter = [&](const Eigen::Isometry3d& flange_from_scanner) {
     Eigen::Matrix3Xd p(3, std::ssize(data.stations[0].views));
@@ -157,7 +157,7 @@ TEST(SpacingErrors, AreSigned) {
 
 // Mean error of the spacing over some simulated calibrations; the check itself without noise.
 template <class Spoil>
-double MeanSpacing(Result<Setup> (*method)(const Measurements&), const Spoil& spoil) {
+double MeanSpacing(Result<Kinematics> (*method)(const Measurements&), const Spoil& spoil) {
   constexpr int kSeeds = 8;
   double mean = 0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -166,7 +166,7 @@ double MeanSpacing(Result<Setup> (*method)(const Measurements&), const Spoil& sp
     Measurements data = Simulate(scene).data;
     spoil(&data);
     data.check = Simulate(WithoutNoise(scene)).data.check;
-    const Result<Setup> found = method(data);
+    const Result<Kinematics> found = method(data);
     EXPECT_TRUE(found.ok()) << found.error().message;
     mean += found.ok() ? SizeOfErrors(SpacingErrors(data, *found)).mean / kSeeds : NAN;
   }

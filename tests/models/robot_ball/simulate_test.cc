@@ -20,7 +20,7 @@ Scene Noiseless() {
 }
 
 // Largest residual of all poses at these hand-eye and link errors, the artifact where it truly is; mm.
-double LargestResidual(const Simulated& robot, const Setup& setup) {
+double LargestResidual(const Simulated& robot, const Kinematics& setup) {
   const Model model(robot.data.links, robot.data.spheres);
   std::vector<double> q(model.quantities().size());
   Eigen::VectorXd::Map(&q[Model::kHandEye], 6) = NumbersOf(setup.flange_from_scanner);
@@ -41,7 +41,7 @@ double LargestResidual(const Simulated& robot, const Setup& setup) {
 TEST(Simulate, WithoutNoiseTheTruthExplainsEveryBall) {
   const Simulated robot = Simulate(Noiseless());
   EXPECT_LT(LargestResidual(robot, robot.truth), 1e-9);
-  Setup nominal = robot.truth;
+  Kinematics nominal = robot.truth;
   nominal.link_errors.assign(6, {});
   EXPECT_GT(LargestResidual(robot, nominal), 0.5);
 }

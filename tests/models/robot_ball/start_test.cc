@@ -15,7 +15,7 @@ double Turn(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 }
 
 void ExpectTruth(const Measurements& data, double mm, double rad) {
-  const Result<Setup> setup = InitialHandEye(data);
+  const Result<Kinematics> setup = InitialHandEye(data);
   ASSERT_TRUE(setup.ok()) << setup.error().message;
   EXPECT_LT(Turn(setup->flange_from_scanner, PublishedHandEye()), rad);
   EXPECT_LT((setup->flange_from_scanner.translation() - PublishedHandEye().translation()).norm(), mm);
@@ -23,7 +23,7 @@ void ExpectTruth(const Measurements& data, double mm, double rad) {
 }
 
 std::string Complaint(const Measurements& data) {
-  const Result<Setup> setup = InitialHandEye(data);
+  const Result<Kinematics> setup = InitialHandEye(data);
   return setup.ok() ? "" : setup.error().message;
 }
 
@@ -104,7 +104,7 @@ TEST(InitialHandEye, AnyHandEye) {
     for (Station& station : data.stations)
       for (Model::View& view : station.views)
         for (auto& ball : view.balls) ball.centre = other.inverse() * (PublishedHandEye() * ball.centre);
-    const Result<Setup> setup = InitialHandEye(data);
+    const Result<Kinematics> setup = InitialHandEye(data);
     ASSERT_TRUE(setup.ok()) << setup.error().message;
     EXPECT_TRUE(setup->flange_from_scanner.isApprox(other, 1e-9)) << turn;
   }

@@ -22,7 +22,7 @@ TEST(RobotStudy, MethodsAreInTheOrderOfThePaper) {
 }
 
 TEST(RobotStudy, RefinementReachesTheBound) {
-  Scene scene;
+  robot_ball::Scene scene;
   scene.u_spheres = 0;
   for (const Noise noise : {Noise::kDeclared, Noise::kEstimated}) {
     const Efficiency e = StudyEfficiency(scene, noise, 80, kThreads);

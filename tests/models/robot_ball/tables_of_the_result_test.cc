@@ -24,7 +24,7 @@ Measurements WithoutLinks(Measurements data) {
   return data;
 }
 
-Scene Scene() {
+Scene SmallScene() {
   Scene scene;
   scene.stations = 4;
   return scene;
@@ -33,17 +33,17 @@ Scene Scene() {
 struct Calibrated {
   Measurements data;
   Calibration calibration;
-  Setup setup;  // as the result says
+  Kinematics setup;  // as the result says
 };
 
 Calibrated Calibrate(const Measurements& data) {
   Declaration declaration;
   declaration.data = data;
   declaration.u_of_spheres.resize(data.spheres.size(), 0.001);
-  const Result<Calibration> result = Scanner(declaration, robot_study::DeclaredModel(data, Scene())).Calibrate({});
+  const Result<Calibration> result = Scanner(declaration, robot_study::DeclaredModel(data, SmallScene())).Calibrate({});
   EXPECT_TRUE(result.ok()) << result.error().message;
   if (!result.ok()) return {};
-  Setup setup;
+  Kinematics setup;
   setup.flange_from_scanner.matrix() = result->frames.at("hand_eye");
   for (size_t k = 1; k <= data.links.size(); ++k) {
     const auto value = [&](const char* name) { return result->Find(name + std::to_string(k))->value; };
@@ -106,7 +106,7 @@ void ExpectTablesOf(const Calibrated& robot) {
 }
 
 TEST(RobotFigures, TablesSayWhatTheResultSays) {
-  const Calibrated robot = Calibrate(Simulate(Scene()).data);
+  const Calibrated robot = Calibrate(Simulate(SmallScene()).data);
   ExpectTablesOf(robot);
   EXPECT_THAT(robot.calibration.targets[0].residual_tables.at("poses").columns,
               ElementsAre("q1", "q2", "q3", "q4", "q5", "q6", "x", "y", "z", "balls", "rms"));
@@ -115,14 +115,14 @@ TEST(RobotFigures, TablesSayWhatTheResultSays) {
 }
 
 TEST(RobotFigures, PosesOfTheFlangeHaveNoJoints) {
-  const Calibrated robot = Calibrate(WithoutLinks(Simulate(Scene()).data));
+  const Calibrated robot = Calibrate(WithoutLinks(Simulate(SmallScene()).data));
   ExpectTablesOf(robot);
   EXPECT_THAT(robot.calibration.targets[0].residual_tables.at("poses").columns,
               ElementsAre("x", "y", "z", "balls", "rms"));
 }
 
 TEST(RobotFigures, ErrorsOfLinksKnowTheirNominalNumber) {
-  const Calibrated robot = Calibrate(Simulate(Scene()).data);
+  const Calibrated robot = Calibrate(Simulate(SmallScene()).data);
   for (size_t k = 0; k < robot.data.links.size(); ++k) {
     const Link& link = robot.data.links[k];
     for (const auto& [name, nominal] : {std::pair{"theta_", link.theta},
