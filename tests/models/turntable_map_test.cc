@@ -1,5 +1,6 @@
 // The one map from readings to the table frame: what residual, search and points must agree on.
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 #include <cmath>
 #include "models/turntable/calibrated_turntable.h"
 #include "solver/random.h"

@@ -40,7 +40,7 @@ class SystemTest : public ::testing::TestWithParam<Wrong> {
     EXPECT_TRUE(WriteSimulatedTurntable(scene_, ScanFileFormat::kNpy, folder_.path()).ok());
     folder_.Write("dataset.yaml", folder_.Read("dataset.yaml") + "parameters: {" + quantity.name + ": " +
                                       fmt::format(fmt::runtime(role), error) + "}\n");
-    return ReadDataset(folder_.path()).value();
+    return *ReadDataset(folder_.path());
   }
 
   static void ExpectFlat(const ComparisonRow& row) {

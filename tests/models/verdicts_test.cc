@@ -209,7 +209,7 @@ TEST_F(VerdictsTest, TheMinimumOnAnyEdge) {
 TEST_F(VerdictsTest, AHeldOffsetHasNoEdge) {
   const Calibration calibration = Calibrated(ScannerOf(See(kGood), {{110, 395}, {130, 425}, 1}, [](Turntable* model) {
     model->quantity(Turntable::kM).role = Role::kHold;
-    model->quantity(Turntable::kM).value = kTruth.M;
+    model->quantity(Turntable::kM).value = kTruth.M();
   }));
   EXPECT_TRUE(calibration.ok()) << Joined(calibration.unreliable);
   EXPECT_EQ(calibration.Find("M")->value, kTruth.M());
