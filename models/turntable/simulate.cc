@@ -18,7 +18,7 @@ constexpr double kSpike = 30;                            // mm
 constexpr double kNearestWall = 30, kFarthestWall = 60;  // mm behind the plate
 constexpr int kSteps = 10, kRounds = 4;
 constexpr double kSettled_mm = 1e-9;
-constexpr double kLeastHalf = 1;                         // mm: of what is seen of a plate by a single profile or point
+constexpr double kLeastHalf = 1;  // mm: of what is seen of a plate by a single profile or point
 // Placements have the streams 1, 2, ...
 constexpr uint64_t kFormStreams = uint64_t{1} << 32, kBackgroundStreams = uint64_t{2} << 32;
 
@@ -116,8 +116,9 @@ class Background {
 }  // namespace
 
 System WithDepths(const TurntableScene& scene) {
-  System system = scene.system;
+  System system = scene.system, shown = scene.system;
   if (system[Turntable::kLinearity] == 0) return system;
+  shown[Turntable::kLinearity] = 0;
   for (int round = 0; round < kRounds; ++round) {  // the depths that are shown depend on linearity a little
     std::vector<Placement> placements(static_cast<size_t>(scene.placements));
     for (int k = 0; k < scene.placements; ++k) {
@@ -127,18 +128,20 @@ System WithDepths(const TurntableScene& scene) {
         std::vector<double> y, z;
         for (int j = 0; j < scene.points; ++j) {
           z.push_back(Spread(scene.line_length, j, scene.points));
-          y.push_back(ShownDepth(round == 0 ? scene.system : system, flat, alpha, z.back()));
+          y.push_back(ShownDepth(shown, flat, alpha, z.back()));
         }
         placements[static_cast<size_t>(k)].profiles.push_back(CompressProfile(alpha, y, z, {}));
       }
     }
     system.depths = VolumeOf(placements).y;
+    shown = system;
   }
   return system;
 }
 
 GridBox SearchAround(const System& system, double width_M, double width_N) {
-  const double lower_M = std::round(system.M() - 0.65 * width_M), lower_N = std::round(system.N() - 14.0 / 30 * width_N);
+  const double lower_M = std::round(system.M() - 0.65 * width_M),
+               lower_N = std::round(system.N() - 14.0 / 30 * width_N);
   return {{lower_M, lower_N}, {lower_M + width_M, lower_N + width_N}, 1};
 }
 
