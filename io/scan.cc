@@ -51,9 +51,9 @@ Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const 
       match = ChosenColumn{.name = wanted.name, .index = i, .factor = *factor};
     }
     if (!match && wanted.required) {
-      return Error{place + ": found the columns " + Listed(found) + ", expected also " + PossibleNames(wanted) +
-                       wanted.remedy,
-                   ErrorKind::kMissingColumns};
+      return Error{
+          place + ": found the columns " + Listed(found) + ", expected also " + PossibleNames(wanted) + wanted.remedy,
+          ErrorKind::kMissingColumns};
     }
     if (match) chosen.push_back(*match);
   }

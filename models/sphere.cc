@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <limits>
 #include "models/median.h"
-#include "solver/model.h"
 #include "solver/linearize.h"
+#include "solver/model.h"
 #include "solver/random.h"
 #include "solver/refine.h"
-#include "solver/uncertainty/covariance.h"
 #include "solver/uncertainty/budget.h"
+#include "solver/uncertainty/covariance.h"
 
 namespace scancal {
 namespace {

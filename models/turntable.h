@@ -145,8 +145,8 @@ struct System {
   double N() const { return q[Turntable::kN]; }
   System With(double M, double N) const;  // everything else as it is
 
-  double Bend(double y) const;                              // eta^2
-  ProfileInTable<double> At(double alpha) const;            // a profile without jitter
+  double Bend(double y) const;                    // eta^2
+  ProfileInTable<double> At(double alpha) const;  // a profile without jitter
   Eigen::Vector3d Point(double alpha, double y, double z) const;
   struct Derivatives {
     Eigen::Vector3d point;

@@ -1,9 +1,9 @@
 // The worked examples of the GUM (JCGM 100:2008, Annex H).
+#include "solver/uncertainty/gum.h"
 #include <cmath>
 #include <limits>
 #include "models/selftest/fit.h"
 #include "models/selftest/selftest.h"
-#include "solver/uncertainty/gum.h"
 
 namespace scancal::selftest {
 namespace {

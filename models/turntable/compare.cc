@@ -148,7 +148,7 @@ MethodResult GridRow(const TurntableScanner& scanner, const TurntableStart& star
 }
 
 System FoundWithout(const TurntableScanner& scanner, const TurntableStart& start, Turntable::Residuals residuals,
-                   bool weighted, const std::vector<int>& estimate, size_t out) {
+                    bool weighted, const std::vector<int>& estimate, size_t out) {
   const TurntableFit fit = scanner.Fit(start.system, residuals, estimate, out);
   return weighted ? scanner.FitWeighted(fit).Found() : fit.Found();
 }

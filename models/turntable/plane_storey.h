@@ -17,7 +17,7 @@ enum class PlaneFit {
 class PlaneStorey {
  public:
   PlaneStorey(const std::vector<Profile>& profiles, turntable::System system);  // all of it but M and N
-  double Rmse(double M, double N, PlaneFit fit) const;  // eq. (14), mm
+  double Rmse(double M, double N, PlaneFit fit) const;                          // eq. (14), mm
   // Total least squares plane at (M, N): unit normal with distance >= 0.
   std::pair<Eigen::Vector3d, double> FitPlane(double M, double N) const;
 

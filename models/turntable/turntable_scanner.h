@@ -51,8 +51,9 @@ class TurntableScanner final : public Scanner {
   Result<TurntableStart> StartIn(const GridBox& box) const;
   // From planes fitted in closed form to the points as `system` sees them; estimate: indices of further quantities to
   // be estimated (Turntable::kTiltX); without: leave that placement out.
-  TurntableFit Fit(const turntable::System& system, Turntable::Residuals residuals, const std::vector<int>& estimate = {},
-                   std::optional<size_t> without = {}, int max_iterations = 100) const;
+  TurntableFit Fit(const turntable::System& system, Turntable::Residuals residuals,
+                   const std::vector<int>& estimate = {}, std::optional<size_t> without = {},
+                   int max_iterations = 100) const;
   // The headline: from a depth fit with equal weights to its variances and generalised least squares.
   TurntableFit FitWeighted(const TurntableFit& plain, int max_iterations = 100) const;
   const std::vector<Placement>& placements() const { return placements_; }

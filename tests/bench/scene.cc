@@ -29,8 +29,7 @@ std::vector<Placement> Compress(const std::vector<SimulatedPlacement>& points) {
 
 std::vector<PlaneStorey> Storeys(const std::vector<Placement>& placements) {
   std::vector<PlaneStorey> storeys;
-  for (const Placement& placement : placements)
-    storeys.emplace_back(placement.profiles, turntable::System{});
+  for (const Placement& placement : placements) storeys.emplace_back(placement.profiles, turntable::System{});
   return storeys;
 }
 

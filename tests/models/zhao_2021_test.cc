@@ -30,8 +30,7 @@ std::vector<std::vector<Measurement>> Measurements(const std::vector<SimulatedPl
 
 std::vector<PlaneStorey> Storeys(const std::vector<SimulatedPlacement>& placements) {
   std::vector<PlaneStorey> storeys;
-  for (const SimulatedPlacement& placement : placements)
-    storeys.emplace_back(Compress(placement), turntable::System{});
+  for (const SimulatedPlacement& placement : placements) storeys.emplace_back(Compress(placement), turntable::System{});
   return storeys;
 }
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <numbers>
 #include "models/robot_ball/fit.h"
-#include "solver/uncertainty/gum.h"
 #include "solver/calibrate.h"
+#include "solver/uncertainty/gum.h"
 #include "solver/weigh.h"
 #include "tests/in_parallel.h"
 

@@ -1,6 +1,6 @@
+#include "solver/uncertainty/gum.h"
 #include <gtest/gtest.h>
 #include <limits>
-#include "solver/uncertainty/gum.h"
 
 namespace scancal {
 namespace {

@@ -1,6 +1,6 @@
+#include "solver/weigh.h"
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
-#include "solver/weigh.h"
 
 namespace scancal {
 namespace {
