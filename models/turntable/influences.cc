@@ -7,7 +7,7 @@
 namespace scancal {
 namespace {
 
-// Median peak to valley of a surface of such modes over its rms (uncertainty specification, section 2: 6.3).
+// Median peak to valley of a surface of such modes over its rms (docs/uncertainty.md, section 2: 6.3).
 constexpr double kPeakToValley = 6;
 
 // Those with a quantity of the same name and no rule of their own.

@@ -15,7 +15,7 @@ struct PlateRectangle {  // on the plate, mm
   double centre_u = 0, centre_v = 0, half_u = 1, half_v = 1;
 };
 
-// Smooth form over a rectangle (uncertainty specification, section 2). rms, mm: of kModes expected over the ensemble,
+// Smooth form over a rectangle (docs/uncertainty.md, section 2). rms, mm: of kModes expected over the ensemble,
 // so that one plate may have twice as much; of the waves of every single plate, a function that the modes do not hold.
 class PlateForm {
  public:
