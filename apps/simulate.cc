@@ -59,7 +59,7 @@ namespace {
 // Each has a flag of its name.
 const Quantities& SystemQuantities() {
   static const Quantities quantities = [] {
-    Quantities all = Turntable(Turntable::Residuals::kDepth).quantities();
+    Quantities all = turntable::Model(turntable::Model::Residuals::kDepth).quantities();
     all.resize(turntable::System::kQuantities);
     return all;
   }();
@@ -75,7 +75,7 @@ int RunTurntable() {
     return Complain("--format: found \"" + FLAGS_format + "\", expected csv or npy");
   if (FLAGS_form_kind != "modes" && FLAGS_form_kind != "smooth" && FLAGS_form_kind != "bent")
     return Complain("--form_kind: found \"" + FLAGS_form_kind + "\", expected modes, smooth or bent");
-  TurntableScene scene;
+  turntable::Scene scene;
   for (size_t k = 0; k < scene.system.q.size(); ++k) {
     const Quantity& quantity = SystemQuantities()[k];
     scene.system[k] = NumberOfFlag(quantity.name) * (quantity.unit == Unit::kRad ? kDegree : 1);
@@ -89,18 +89,18 @@ int RunTurntable() {
   scene.line_correlation = FLAGS_line_correlation;
   scene.encoder_jitter = FLAGS_encoder_jitter * kDegree;
   scene.form = FLAGS_form;
-  scene.form_kind = FLAGS_form_kind == "modes"    ? FormKind::kModes
-                    : FLAGS_form_kind == "smooth" ? FormKind::kSmooth
-                                                  : FormKind::kBent;
+  scene.form_kind = FLAGS_form_kind == "modes"    ? turntable::FormKind::kModes
+                    : FLAGS_form_kind == "smooth" ? turntable::FormKind::kSmooth
+                                                  : turntable::FormKind::kBent;
   scene.one_plate = FLAGS_one_plate;
   scene.outliers = FLAGS_outliers;
   scene.background = FLAGS_background;
   scene.missing = FLAGS_missing;
   scene.declare = FLAGS_declare;
   scene.seed = FLAGS_seed;
-  scene.search = SearchAround(scene.system, FLAGS_search_width_M, FLAGS_search_width_N);
-  const auto format = FLAGS_format == "npy" ? ScanFileFormat::kNpy : ScanFileFormat::kCsv;
-  const Result<void> written = WriteSimulatedTurntable(scene, format, FLAGS_out);
+  scene.search = turntable::SearchAround(scene.system, FLAGS_search_width_M, FLAGS_search_width_N);
+  const auto format = FLAGS_format == "npy" ? turntable::ScanFileFormat::kNpy : turntable::ScanFileFormat::kCsv;
+  const Result<void> written = turntable::WriteSimulated(scene, format, FLAGS_out);
   if (!written.ok()) return Complain(written.error().message);
   std::printf(
       "wrote %s: %d placements x %d profiles x %d points, M = %g mm, N = %g mm, seed %llu; truth.json holds the "

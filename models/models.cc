@@ -1,12 +1,12 @@
 #include "models/models.h"
 #include "models/flange_ball/scanner.h"
 #include "models/robot_ball/scanner.h"
-#include "models/turntable/turntable_scanner.h"
+#include "models/turntable/scanner.h"
 
 namespace scancal {
 namespace {
 
-constexpr ScannerKind kKinds[] = {kTurntable, robot_ball::kKind, flange_ball::kKind};
+constexpr ScannerKind kKinds[] = {turntable::kKind, robot_ball::kKind, flange_ball::kKind};
 
 }  // namespace
 

@@ -4,9 +4,40 @@
 #include <algorithm>
 #include <numbers>
 
-namespace scancal {
+namespace scancal::turntable {
+namespace {
 
-Turntable::Turntable(Residuals residuals) : residuals_(residuals) {
+constexpr int kLowest = 2, kHighest = 4;
+
+using Legendre = std::array<double, kHighest + 1>;
+
+// Orthonormal on [-1, 1] under its uniform distribution.
+Legendre LegendreAt(double x) {
+  Legendre p;
+  for (int degree = 0; degree <= kHighest; ++degree)
+    p[degree] = std::sqrt(2.0 * degree + 1) * std::legendre(static_cast<unsigned>(degree), x);
+  return p;
+}
+
+}  // namespace
+
+FormModes FormModesAt(double u, double v, double aspect) {
+  const Legendre in_u = LegendreAt(std::clamp(u, -1.0, 1.0)), in_v = LegendreAt(std::clamp(v, -1.0, 1.0));
+  FormModes modes;
+  size_t k = 0;
+  double squares = 0;
+  for (int degree = kLowest; degree <= kHighest; ++degree) {
+    for (int i = 0; i <= degree; ++i) {
+      const double waves = i + aspect * (degree - i), share = 1 / (waves * waves);
+      modes[k++] = share * in_u[i] * in_v[degree - i];
+      squares += share * share;
+    }
+  }
+  for (double& mode : modes) mode /= std::sqrt(squares);
+  return modes;
+}
+
+Model::Model(Residuals residuals) : residuals_(residuals) {
   using enum Scope;
   const auto declare = [&](const char* name, Unit unit, Scope scope, Role role, bool in_nodes,
                            const char* source = "") {
@@ -36,7 +67,7 @@ Turntable::Turntable(Residuals residuals) : residuals_(residuals) {
     declare(("form_" + std::to_string(k + 1)).c_str(), Unit::kMm, kTarget, Role::kHold, false, "form");
 }
 
-std::vector<StandIns<Turntable::View>> Turntable::MakeNodes(const Target& target) const {
+std::vector<StandIns<Model::View>> Model::MakeNodes(const Target& target) const {
   if (residuals_ == Residuals::kDepth || target.views.empty()) return {};
   double first = target.views.front().alpha, last = first, weight = 0, y = 0, z = 0, yy = 0, zz = 0;
   for (const View& view : target.views) {
@@ -65,7 +96,7 @@ std::vector<StandIns<Turntable::View>> Turntable::MakeNodes(const Target& target
   return {{nodes, target.views.size()}};
 }
 
-Eigen::MatrixXd Turntable::Interpolate(const std::vector<View>& nodes, const View& view) const {
+Eigen::MatrixXd Model::Interpolate(const std::vector<View>& nodes, const View& view) const {
   Eigen::Matrix3d turn;
   for (int k = 0; k < 3; ++k) turn.col(k) << 1, std::cos(nodes[k].alpha), std::sin(nodes[k].alpha);
   const Eigen::Vector3d by_turn = turn.inverse() * Eigen::Vector3d(1, std::cos(view.alpha), std::sin(view.alpha));
@@ -80,26 +111,24 @@ Eigen::MatrixXd Turntable::Interpolate(const std::vector<View>& nodes, const Vie
   return result;
 }
 
-std::pair<Eigen::Vector3d, double> Turntable::Plane(const Target& plane, const Eigen::Vector3d& own) {
+std::pair<Eigen::Vector3d, double> Model::Plane(const Target& plane, const Eigen::Vector3d& own) {
   const Eigen::Vector3d turn = own[0] * plane.e1 + own[1] * plane.e2;
   Eigen::Vector3d normal;
   Rotate(turn.data(), plane.normal, normal.data());
   return {normal, plane.distance + own[2]};
 }
 
-void Turntable::SetPlane(const Eigen::Vector3d& normal, double distance, Target* target) {
+void Model::SetPlane(const Eigen::Vector3d& normal, double distance, Target* target) {
   target->normal = normal.normalized();
   target->distance = distance;
   target->e1 = target->normal.unitOrthogonal();
   target->e2 = target->normal.cross(target->e1);
 }
 
-namespace turntable {
-
 System System::With(double M, double N) const {
   System system = *this;
-  system[Turntable::kM] = M;
-  system[Turntable::kN] = N;
+  system[Model::kM] = M;
+  system[Model::kN] = N;
   return system;
 }
 
@@ -113,8 +142,8 @@ namespace {
 
 // With what a profile has besides: none of it.
 template <class T>
-std::array<T, Turntable::kForm> OfOneProfile(const std::array<double, System::kQuantities>& system) {
-  std::array<T, Turntable::kForm> q;
+std::array<T, Model::kForm> OfOneProfile(const std::array<double, System::kQuantities>& system) {
+  std::array<T, Model::kForm> q;
   q.fill(T(0.0));
   for (size_t k = 0; k < system.size(); ++k) q[k] = T(system[k]);
   return q;
@@ -124,15 +153,13 @@ std::array<T, Turntable::kForm> OfOneProfile(const std::array<double, System::kQ
 
 ProfileInTable<double> System::At(double alpha) const { return {alpha, OfOneProfile<double>(q).data()}; }
 
-Eigen::Vector3d System::Point(double alpha, double y, double z) const {
-  return Eigen::Vector3d::Map(At(alpha).Point(y, z, Bend(y)).data());
-}
+Eigen::Vector3d System::Point(double alpha, double y, double z) const { return At(alpha).Point(y, z, Bend(y)); }
 
 System::Derivatives System::Differentiate(double alpha, double y, double z) const {
   using Jet = ceres::Jet<double, kQuantities>;
-  std::array<Jet, Turntable::kForm> seeds = OfOneProfile<Jet>(q);
+  std::array<Jet, Model::kForm> seeds = OfOneProfile<Jet>(q);
   for (int k = 0; k < static_cast<int>(kQuantities); ++k) seeds[k].v[k] = 1;
-  const std::array<Jet, 3> p = ProfileInTable<Jet>(alpha, seeds.data()).Point(y, z, Bend(y));
+  const Eigen::Matrix<Jet, 3, 1> p = ProfileInTable<Jet>(alpha, seeds.data()).Point(y, z, Bend(y));
   Derivatives result;
   for (int i = 0; i < 3; ++i) {
     result.point[i] = p[i].a;
@@ -141,5 +168,4 @@ System::Derivatives System::Differentiate(double alpha, double y, double z) cons
   return result;
 }
 
-}  // namespace turntable
-}  // namespace scancal
+}  // namespace scancal::turntable

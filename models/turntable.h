@@ -6,12 +6,20 @@
 #include <cmath>
 #include <string>
 #include <vector>
-#include "models/parts/pseudo_points.h"
+#include "models/line/pseudo_points.h"
 #include "models/rotation.h"
-#include "models/turntable/form_modes.h"
 #include "solver/model.h"
 
-namespace scancal {
+namespace scancal::turntable {
+
+// The form of a plate that is not quite flat, as a few smooth modes: orthonormal Legendre products of total degree 2 to
+// 4 over [-1, 1]^2, each times its share of the whole, together a mean square of one: amplitudes of standard deviation
+// u then are a form of u rms. Lower degrees are the plane itself. A plate bends alike per mm in all directions, so
+// where the rectangle is `aspect` times as long in u as in v the variance of degrees (i, j) falls as (i + aspect j)^-4;
+// over a square as (total degree)^-4.
+inline constexpr int kFormModes = 12;
+using FormModes = std::array<double, kFormModes>;
+FormModes FormModesAt(double u, double v, double aspect);  // u, v outside the square are taken at its edge
 
 // A reading (alpha; y, z) lies in the table frame at P, see ProfileInTable. A placement of the plate is the plane
 // n . P = d. Two residuals, both affine in (y, z) within a profile, hence exact on its pseudo-points:
@@ -22,10 +30,10 @@ namespace scancal {
 // For a lidar the noise lies along the range: e = r / (n . dP/drange), with dP/drange taken at the profile's own line
 // (see View::along_range). Lengths mm, angles rad.
 //
-// Besides the quantities of the system, which P knows: the plate's form adds its modes (form_modes.h) to the distance;
+// Besides the quantities of the system, which P knows: the plate's form adds its modes to the distance;
 // encoder_jitter turns a profile, line_offset and line_slope move all its points along depth, as noise does that is
 // correlated along the line; noise_y, noise_z move single points.
-class Turntable {
+class Model {
  public:
   enum Index {
     kM,
@@ -61,7 +69,7 @@ class Turntable {
     // A lidar's rows are multiplied by the range at the profile's own line, so that n . dP/drange = -(n . O - d) /
     // range, O the origin of the sensor, divides all of them alike.
     bool along_range = false;
-    // Per point, times its weight (smooth_columns.h); empty: none.
+    // Per point, times its weight (see AddForm, AddBend); empty: none.
     Eigen::MatrixXd form = {};  // the modes of the plate's form, points x kFormModes
     Eigen::VectorXd bend = {};  // eta^2
     Eigen::MatrixXd line = {};  // points x 2: of line_offset and line_slope
@@ -74,7 +82,7 @@ class Turntable {
     Eigen::Vector3d e1 = Eigen::Vector3d::UnitX(), e2 = Eigen::Vector3d::UnitY();
   };
 
-  explicit Turntable(Residuals residuals);
+  explicit Model(Residuals residuals);
   const Quantities& quantities() const { return quantities_; }
   Quantity& quantity(int k) { return quantities_[k]; }
   Residuals residuals() const { return residuals_; }
@@ -99,8 +107,6 @@ class Turntable {
   Quantities quantities_;
 };
 
-namespace turntable {
-
 // The only map from readings and the quantities of the system to the table frame, for all points of one profile:
 //
 //     P(alpha; y, z) = Rz(-a) Rz(pi) ( Ry(tilt_y) Rx(tilt_x) (0, true y, true z)' + (1 + expansion) (-M, N, 0)' )
@@ -115,17 +121,15 @@ namespace turntable {
 // turns, because the normal of a plane is turned back once and then needs only products with them. mm, rad.
 template <class T>
 struct ProfileInTable {
-  using Vector = std::array<T, 3>;
+  using Vector = Eigen::Matrix<T, 3, 1>;
 
-  // q: by Turntable::Index.
+  // q: by Model::Index.
   ProfileInTable(double alpha, const T* q);
 
   Vector Turned(const Vector& v) const { return {-(c * v[0] + s * v[1]), s * v[0] - c * v[1], v[2]}; }
   Vector TurnedBack(const Vector& v) const { return {-(c * v[0] - s * v[1]), -(s * v[0] + c * v[1]), v[2]}; }
   Vector Point(double y, double z, double bend) const {
-    Vector p;
-    for (size_t i = 0; i < 3; ++i) p[i] = origin[i] + along_y[i] * y + along_z[i] * z + along_bend[i] * bend;
-    return Turned(p);
+    return Turned(origin + along_y * T(y) + along_z * T(z) + along_bend * T(bend));
   }
 
   T c, s;         // cosine and sine of a
@@ -135,14 +139,14 @@ struct ProfileInTable {
 
 // A number for each quantity of the system: as declared, as found, as it is in a simulation.
 struct System {
-  static constexpr size_t kQuantities = Turntable::kNormal1;
-  std::array<double, kQuantities> q{};  // by Turntable::Index
+  static constexpr size_t kQuantities = Model::kNormal1;
+  std::array<double, kQuantities> q{};  // by Model::Index
   std::array<double, 2> depths{};       // over which eta runs from -1 to 1, mm; of no consequence without linearity
 
   double operator[](size_t k) const { return q[k]; }
   double& operator[](size_t k) { return q[k]; }
-  double M() const { return q[Turntable::kM]; }
-  double N() const { return q[Turntable::kN]; }
+  double M() const { return q[Model::kM]; }
+  double N() const { return q[Model::kN]; }
   System With(double M, double N) const;  // everything else as it is
 
   double Bend(double y) const;                    // eta^2
@@ -158,35 +162,33 @@ struct System {
 template <class T>
 ProfileInTable<T>::ProfileInTable(double alpha, const T* q) {
   using std::cos, std::sin;
-  const T a = alpha - (q[Turntable::kEncoderJitter] + cos(alpha) * q[Turntable::kEncoderCos1] +
-                       sin(alpha) * q[Turntable::kEncoderSin1] + cos(2 * alpha) * q[Turntable::kEncoderCos2] +
-                       sin(2 * alpha) * q[Turntable::kEncoderSin2]);
+  const T a =
+      alpha - (q[Model::kEncoderJitter] + cos(alpha) * q[Model::kEncoderCos1] + sin(alpha) * q[Model::kEncoderSin1] +
+               cos(2 * alpha) * q[Model::kEncoderCos2] + sin(2 * alpha) * q[Model::kEncoderSin2]);
   c = cos(a);
   s = sin(a);
-  const T growth = 1.0 + q[Turntable::kExpansion];
-  origin = {-q[Turntable::kM] * growth, q[Turntable::kN] * growth, T(0.0)};
-  const T cx = cos(q[Turntable::kTiltX]), sx = sin(q[Turntable::kTiltX]), cy = cos(q[Turntable::kTiltY]),
-          sy = sin(q[Turntable::kTiltY]);
+  const T growth = 1.0 + q[Model::kExpansion];
+  origin = {-q[Model::kM] * growth, q[Model::kN] * growth, T(0.0)};
+  const T cx = cos(q[Model::kTiltX]), sx = sin(q[Model::kTiltX]), cy = cos(q[Model::kTiltY]),
+          sy = sin(q[Model::kTiltY]);
   const Vector depth = {sy * sx, cx, cy * sx}, height = {sy * cx, -sx, cy * cx};
-  for (size_t i = 0; i < 3; ++i) {
-    along_y[i] = depth[i] * (1.0 + q[Turntable::kScaleY]);
-    along_z[i] = height[i] * (1.0 + q[Turntable::kScaleZ]) + depth[i] * q[Turntable::kShear];
-    along_bend[i] = depth[i] * q[Turntable::kLinearity];
+  for (int i = 0; i < 3; ++i) {
+    along_y[i] = depth[i] * (1.0 + q[Model::kScaleY]);
+    along_z[i] = height[i] * (1.0 + q[Model::kScaleZ]) + depth[i] * q[Model::kShear];
+    along_bend[i] = depth[i] * q[Model::kLinearity];
   }
 }
 
-}  // namespace turntable
-
 template <class T>
-void Turntable::Residual(const Target& plane, const View& profile, const Seen<T>& q, T* r) const {
+void Model::Residual(const Target& plane, const View& profile, const Seen<T>& q, T* r) const {
   const T turn[3] = {q[kNormal1] * plane.e1[0] + q[kNormal2] * plane.e2[0],
                      q[kNormal1] * plane.e1[1] + q[kNormal2] * plane.e2[1],
                      q[kNormal1] * plane.e1[2] + q[kNormal2] * plane.e2[2]};
-  std::array<T, 3> normal;
+  Eigen::Matrix<T, 3, 1> normal;
   Rotate(turn, plane.normal, normal.data());
-  const turntable::ProfileInTable<T> in_table(profile.alpha, q.q);
-  const std::array<T, 3> n = in_table.TurnedBack(normal);
-  const auto along = [&n](const std::array<T, 3>& v) { return n[0] * v[0] + n[1] * v[1] + n[2] * v[2]; };
+  const ProfileInTable<T> in_table(profile.alpha, q.q);
+  const Eigen::Matrix<T, 3, 1> n = in_table.TurnedBack(normal);
+  const auto along = [&n](const Eigen::Matrix<T, 3, 1>& v) { return T(n[0] * v[0] + n[1] * v[1] + n[2] * v[2]); };
   // n . P - d = at_origin + by_y y + by_z z + by_bend bend
   const T at_origin = along(in_table.origin) - (plane.distance + q[kDistance]);
   const T by_y = along(in_table.along_y), by_z = along(in_table.along_z), by_bend = along(in_table.along_bend);
@@ -207,4 +209,4 @@ void Turntable::Residual(const Target& plane, const View& profile, const Seen<T>
   }
 }
 
-}  // namespace scancal
+}  // namespace scancal::turntable

@@ -1,31 +1,17 @@
 // The published search and the joint refinements on the same data.
 #include <fmt/format.h>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include "io/progress.h"
-#include "models/turntable/turntable_scanner.h"
+#include "models/turntable/scanner.h"
 #include "solver/calibrate.h"
 
-namespace scancal {
-
-using turntable::System;
-
+namespace scancal::turntable {
 namespace {
 
 constexpr double kSteps[] = {1, 0.1, 0.01};  // mm: the published one, and what finer ones bring
 constexpr double kMostNodes = 1e8;           // about a minute
 constexpr double kFewPlanes = 2e6;           // fitted on a grid: as long as a refinement
 constexpr double kFewLeftOut = 2e4;          // profiles refitted with each placement left out
-constexpr int kThreads = 2;
-
-class Stopwatch {
- public:
-  double Seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 constexpr size_t kParameters = 4;
 std::vector<double> Values(const System& system) {
@@ -109,11 +95,10 @@ std::optional<double> HeldOutRms(const std::vector<Placement>& placements, const
   return std::sqrt(squares / points);
 }
 
-MethodResult GridRow(const TurntableScanner& scanner, const TurntableStart& start, double step, PlaneFit kind,
+MethodResult GridRow(const Scanner& scanner, const Start& start, double step, PlaneFit kind,
                      const CompareChoice& choice) {
   const std::string name =
       fmt::format("grid, {}, step {:g}", kind == PlaneFit::kVertical ? "as published" : "orthogonal", step);
-  Progress progress(name);
   GridBox box = scanner.Box();
   box.step = step;
   MethodResult row;
@@ -127,12 +112,7 @@ MethodResult GridRow(const TurntableScanner& scanner, const TurntableStart& star
     return row;
   }
   const Stopwatch watch;
-  const GridResult grid = GridSearch(
-      box, static_cast<int>(start.storeys.size()),
-      [&](const std::array<double, 2>& at, std::span<double> rmse) {
-        for (size_t t = 0; t < rmse.size(); ++t) rmse[t] = start.storeys[t].Rmse(at[0], at[1], kind);
-      },
-      kThreads, [&](double fraction) { progress.Show(fraction); });
+  const GridResult grid = Search(box, start.storeys, kind, name);
   row.seconds = watch.Seconds();
   const System declared = scanner.Declared();
   const auto with = [&](const GridNode& node) { return declared.With(node.at[0], node.at[1]); };
@@ -147,9 +127,9 @@ MethodResult GridRow(const TurntableScanner& scanner, const TurntableStart& star
   return row;
 }
 
-System FoundWithout(const TurntableScanner& scanner, const TurntableStart& start, Turntable::Residuals residuals,
-                    bool weighted, const std::vector<int>& estimate, size_t out) {
-  const TurntableFit fit = scanner.Fit(start.system, residuals, estimate, out);
+System FoundWithout(const Scanner& scanner, const Start& start, Model::Residuals residuals, bool weighted,
+                    const std::vector<int>& estimate, size_t out) {
+  const JointFit fit = scanner.Fit(start.system, residuals, estimate, out);
   return weighted ? scanner.FitWeighted(fit).Found() : fit.Found();
 }
 
@@ -160,11 +140,10 @@ bool HoldsOut(const std::vector<Placement>& placements, const CompareChoice& cho
   return placements.size() > 1 && (!choice.brief || refitted <= kFewLeftOut);
 }
 
-MethodResult JointRow(const TurntableScanner& scanner, const TurntableStart& start, const std::string& name,
-                      Turntable::Residuals residuals, bool weighted, const std::vector<int>& estimate,
-                      const CompareChoice& choice) {
+MethodResult JointRow(const Scanner& scanner, const Start& start, const std::string& name, Model::Residuals residuals,
+                      bool weighted, const std::vector<int>& estimate, const CompareChoice& choice) {
   const Stopwatch watch;
-  TurntableFit fit = scanner.Fit(start.system, residuals, estimate);
+  JointFit fit = scanner.Fit(start.system, residuals, estimate);
   const bool determined = fit.solution.observability.undetermined.empty();
   if (weighted && determined) fit = scanner.FitWeighted(fit);
   MethodResult row;
@@ -180,7 +159,7 @@ MethodResult JointRow(const TurntableScanner& scanner, const TurntableStart& sta
     const Headline headline = HeadlineOf(fit.solution, ClusteredCovariance(problem, fit.solution.linear));
     Eigen::Index e = 0;
     for (const int k : problem.With({Scope::kSystem}, Role::kEstimate)) {
-      if (k <= Turntable::kTiltY) row.u[static_cast<size_t>(k)] = std::sqrt(headline.covariance(e, e));
+      if (k <= Model::kTiltY) row.u[static_cast<size_t>(k)] = std::sqrt(headline.covariance(e, e));
       ++e;
     }
     if (!fit.solution.fit.converged) row.note = "no convergence";
@@ -197,18 +176,18 @@ MethodResult JointRow(const TurntableScanner& scanner, const TurntableStart& sta
 
 }  // namespace
 
-Result<Comparison> TurntableScanner::Compare(const CompareChoice& choice) const {
-  SCANCAL_ASSIGN_OR_RETURN(const TurntableStart start, Start());
+Result<Comparison> Scanner::Compare(const CompareChoice& choice) const {
+  SCANCAL_ASSIGN_OR_RETURN(const Start start, FindStart());
   std::vector<MethodResult> results;
   for (const PlaneFit kind : {PlaneFit::kVertical, PlaneFit::kOrthogonal})
     for (const double step : kSteps) results.push_back(GridRow(*this, start, step, kind, choice));
-  using enum Turntable::Residuals;
+  using enum Model::Residuals;
   results.push_back(JointRow(*this, start, "joint, point to plane", kPlane, false, {}, choice));
   results.push_back(JointRow(*this, start, "joint, depth", kDepth, false, {}, choice));
-  results.push_back(JointRow(*this, start, "joint, depth, weighted, tilts", kDepth, true,
-                             {Turntable::kTiltX, Turntable::kTiltY}, choice));
+  results.push_back(
+      JointRow(*this, start, "joint, depth, weighted, tilts", kDepth, true, {Model::kTiltX, Model::kTiltY}, choice));
   results.push_back(JointRow(*this, start, "joint, depth, weighted", kDepth, true, {}, choice));
   return Tabulate(results);
 }
 
-}  // namespace scancal
+}  // namespace scancal::turntable

@@ -1,10 +1,10 @@
-#include "models/turntable/plate_form.h"
+// How a simulated plate deviates from its plane.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include "models/turntable/form_modes.h"
+#include "models/turntable/simulate.h"
 
-namespace scancal {
+namespace scancal::turntable {
 namespace {
 
 constexpr int kWaves = 8;
@@ -71,4 +71,4 @@ double PlateForm::At(double u, double v) const {
   return sum;
 }
 
-}  // namespace scancal
+}  // namespace scancal::turntable

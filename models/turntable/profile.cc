@@ -1,12 +1,14 @@
-#include "models/turntable/profile.h"
+// One profile, compressed, and what errors do to it.
 #include <glog/logging.h>
+#include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include "models/parts/robust_line.h"
-#include "models/turntable/raw_profiles.h"
+#include <limits>
+#include "models/line/robust_line.h"
+#include "models/turntable/compress.h"
 
-namespace scancal {
+namespace scancal::turntable {
 namespace {
 
 struct Line {  // the points with a + b z + c y = 0
@@ -27,7 +29,7 @@ std::vector<double> RangesOnLine(std::span<const double> y, std::span<const doub
   return ranges;
 }
 
-// The rows (y, z, 1) w of a lidar with the column of ones last, see Turntable: its last diagonal is what no line
+// The rows (y, z, 1) w of a lidar with the column of ones last, see Model: its last diagonal is what no line
 // explains in units of the range.
 Eigen::Matrix3d OnesLast(const ProfileFactor& ranged) {
   const Eigen::Matrix3d columns = ranged(Eigen::all, std::vector{2, 1, 0});
@@ -63,6 +65,71 @@ Profile CompressInOrder(double alpha, std::span<const double> y, std::span<const
   return MakeProfile(alpha, static_cast<double>(y.size()), std::move(segments), ranged);
 }
 
+// What of errors that run along a profile moves its line, without their share in what no line explains: that is noise,
+// and large. A profiler's line explains all that is affine in z; a lidar's what is linear in (y, z).
+Eigen::MatrixXd WithoutPureError(const Model::View& view, const Eigen::MatrixXd& columns) {
+  if (!view.along_range) return columns;
+  Eigen::MatrixXd explained(std::ssize(view.points), 2);
+  for (Eigen::Index i = 0; i < explained.rows(); ++i)
+    explained.row(i) = view.points[i].weight * Eigen::RowVector2d(view.points[i].y, view.points[i].z);
+  return explained * Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(explained).solve(columns);
+}
+
+constexpr double kNoExtent_mm = 1e-9;
+
+// Coordinates in the plate: across (at right angles to the axis of the table) and up.
+struct PlateFrame {
+  explicit PlateFrame(const Eigen::Vector3d& normal) {
+    const Eigen::Vector3d sideways = normal.cross(Eigen::Vector3d::UnitZ());
+    across = sideways.norm() > 1e-6 ? Eigen::Vector3d(sideways.normalized()) : Eigen::Vector3d(normal.unitOrthogonal());
+    up = across.cross(normal);
+  }
+  Eigen::Vector2d At(const Eigen::Vector3d& p) const { return {across.dot(p), up.dot(p)}; }
+  Eigen::Vector3d across, up;
+};
+
+// Where the profile bends, its segments show it.
+std::vector<PseudoPoint> PointsOf(const Profile& profile) {
+  std::vector<PseudoPoint> all;
+  for (const ProfileFactor& segment : profile.segments) {
+    const auto points = PseudoPoints(segment);
+    all.insert(all.end(), points.begin(), points.end());
+  }
+  return all;
+}
+
+// Smallest and largest of every coordinate.
+class Bounds {
+ public:
+  void Add(const Eigen::Array2d& at) {
+    lowest_ = lowest_.min(at);
+    highest_ = highest_.max(at);
+  }
+  Eigen::Array2d Scaled(const Eigen::Array2d& at) const {  // to [-1, 1]
+    return (2 * at - lowest_ - highest_) / Sides();
+  }
+  double Aspect() const { return Sides()[0] / Sides()[1]; }
+
+ private:
+  Eigen::Array2d Sides() const { return (highest_ - lowest_).max(kNoExtent_mm); }
+  Eigen::Array2d lowest_ = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), highest_ = -lowest_;
+};
+
+// weight * (a + b z) at the points of the view, the least squares line through `values` at the points of the profile.
+template <class ValuesAt>
+Eigen::MatrixXd AsLine(const Profile& profile, const Model::View& view, Eigen::Index columns,
+                       const ValuesAt& values_at) {
+  const std::vector<PseudoPoint> points = PointsOf(profile);
+  Eigen::MatrixXd line(std::ssize(points), 2), values(std::ssize(points), columns), rows(std::ssize(view.points), 2);
+  for (Eigen::Index i = 0; i < line.rows(); ++i) {
+    line.row(i) = points[i].weight * Eigen::RowVector2d(1, points[i].z);
+    values.row(i) = points[i].weight * values_at(points[i]);
+  }
+  for (Eigen::Index i = 0; i < rows.rows(); ++i)
+    rows.row(i) = view.points[i].weight * Eigen::RowVector2d(1, view.points[i].z);
+  return WithoutPureError(view, rows * Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(line).solve(values));
+}
+
 }  // namespace
 
 Profile MakeProfile(double alpha, double count, std::vector<ProfileFactor> segments,
@@ -92,12 +159,12 @@ std::vector<double> ResidualsFromLine(const Profile& profile, std::span<const do
   return residuals;
 }
 
-std::vector<Turntable::View> Views(const std::vector<Profile>& profiles, Turntable::Residuals residuals) {
-  std::vector<Turntable::View> views;
+std::vector<Model::View> Views(const std::vector<Profile>& profiles, Model::Residuals residuals) {
+  std::vector<Model::View> views;
   for (const Profile& profile : profiles) {
-    const bool along_range = residuals == Turntable::Residuals::kDepth && profile.ranged;
+    const bool along_range = residuals == Model::Residuals::kDepth && profile.ranged;
     const auto points = PseudoPoints(along_range ? *profile.ranged : profile.factor);
-    Turntable::View& view = views.emplace_back();
+    Model::View& view = views.emplace_back();
     view = {profile.alpha, {points.begin(), points.end()}, profile.count, along_range};
     Eigen::MatrixXd line(3, 2);
     for (int i = 0; i < 3; ++i)
@@ -107,12 +174,50 @@ std::vector<Turntable::View> Views(const std::vector<Profile>& profiles, Turntab
   return views;
 }
 
-Eigen::MatrixXd WithoutPureError(const Turntable::View& view, const Eigen::MatrixXd& columns) {
-  if (!view.along_range) return columns;
-  Eigen::MatrixXd explained(std::ssize(view.points), 2);
-  for (Eigen::Index i = 0; i < explained.rows(); ++i)
-    explained.row(i) = view.points[i].weight * Eigen::RowVector2d(view.points[i].y, view.points[i].z);
-  return explained * Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(explained).solve(columns);
+void AddForm(const std::vector<Profile>& profiles, const System& system, const Eigen::Vector3d& normal, double distance,
+             std::vector<Model::View>* views) {
+  const PlateFrame frame(normal);
+  std::vector<ProfileInTable<double>> in_table;
+  for (const Profile& profile : profiles) in_table.push_back(system.At(profile.alpha));
+  // Where the line of sight meets the plane: at the measured point itself, its noise would be a form.
+  const auto on_plate = [&](size_t k, const PseudoPoint& p) -> Eigen::Array2d {
+    const ProfileInTable<double>& at = in_table[k];
+    const Eigen::Vector3d measured = at.Point(p.y, p.z, system.Bend(p.y));
+    const Eigen::Vector3d sight =
+        profiles[k].ranged ? Eigen::Vector3d(measured - at.Turned(at.origin)) : at.Turned(at.along_y);
+    return frame.At(measured - (normal.dot(measured) - distance) / normal.dot(sight) * sight).array();
+  };
+  Bounds plate;
+  for (size_t k = 0; k < profiles.size(); ++k)
+    for (const ProfileFactor& segment : profiles[k].segments)
+      for (const PseudoPoint& p : Ends(segment)) plate.Add(on_plate(k, p));
+  for (size_t k = 0; k < profiles.size(); ++k) {
+    Model::View& view = (*views)[k];
+    view.form = AsLine(profiles[k], view, kFormModes, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
+      const Eigen::Array2d at = plate.Scaled(on_plate(k, p));
+      return Eigen::Map<const Eigen::RowVectorXd>(FormModesAt(at[0], at[1], plate.Aspect()).data(), kFormModes);
+    });
+  }
 }
 
-}  // namespace scancal
+void AddBend(const System& system, const std::vector<Profile>& profiles, std::vector<Model::View>* views) {
+  for (size_t k = 0; k < profiles.size(); ++k) {
+    Model::View& view = (*views)[k];
+    view.bend = AsLine(profiles[k], view, 1, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
+      return Eigen::RowVectorXd::Constant(1, system.Bend(p.y));
+    });
+  }
+}
+
+std::vector<Model::View> PlaneViews(const std::vector<Profile>& profiles, const System& system) {
+  std::vector<Model::View> views = Views(profiles, Model::Residuals::kPlane);
+  if (system[Model::kLinearity] != 0) AddBend(system, profiles, &views);
+  return views;
+}
+
+Eigen::Vector3d PointOf(const ProfileInTable<double>& in_table, const Model::View& profile, Eigen::Index point) {
+  const PseudoPoint& p = profile.points[point];
+  return in_table.Point(p.y, p.z, profile.bend.size() ? profile.bend[point] / p.weight : 0);
+}
+
+}  // namespace scancal::turntable

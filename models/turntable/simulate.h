@@ -8,13 +8,46 @@
 #include "io/result.h"
 #include "io/units.h"
 #include "models/turntable.h"
-#include "models/turntable/plate_form.h"
 #include "solver/grid_search.h"
+#include "solver/random.h"
 
-namespace scancal {
+namespace scancal::turntable {
 
-struct TurntableScene {
-  turntable::System system{{123, 409}, {}};  // its depths follow from the scene: WithDepths
+enum class FormKind {
+  kModes,   // those of FormModesAt, amplitudes independent and normal
+  kSmooth,  // eight plane waves of random direction and phase, 3/4 to 2 sides of the rectangle long, its plane removed
+  kBent,    // the same, 1 to 3 times as long as the longer side: mostly bent about one axis
+};
+
+struct PlateRectangle {  // on the plate, mm
+  double centre_u = 0, centre_v = 0, half_u = 1, half_v = 1;
+};
+
+// Smooth form over a rectangle. rms, mm: of kModes expected over the ensemble, so that one plate may have twice as
+// much; of the waves of every single plate, a function that the modes do not hold.
+class PlateForm {
+ public:
+  PlateForm() = default;  // flat
+  // The same random numbers give the same form, stretched to another rectangle.
+  PlateForm(FormKind kind, double rms, const PlateRectangle& over, Random random);
+  double At(double u, double v) const;  // along the normal, mm; at most a little beyond the rectangle
+
+ private:
+  struct Wave {
+    double along_u, along_v, phase;  // rad per half side
+  };
+  void DrawModes(double rms, Random* random);
+  void DrawWaves(FormKind kind, double rms, Random* random);
+  double Waves(double u, double v) const;
+
+  PlateRectangle over_;
+  std::vector<double> modes_;  // amplitudes, mm
+  std::vector<Wave> waves_;
+  double amplitude_ = 0, plane_[3] = {0, 0, 0};  // of the waves
+};
+
+struct Scene {
+  System system{{123, 409}, {}};  // its depths follow from the scene: WithDepths
   int placements = 3;
   int profiles = 200, points = 200;  // per placement, per profile
   double sweep = 30 * kDegree;       // rad, from -sweep/2 to sweep/2
@@ -34,11 +67,11 @@ struct TurntableScene {
 };
 
 // The scene's system with the depths of its scans, as whoever reads them will see them: what its linearity refers to.
-turntable::System WithDepths(const TurntableScene& scene);
+System WithDepths(const Scene& scene);
 
 // A search interval of these widths (mm) around M and N, at whole millimetres and not centred: as an installer would
 // guess it. The published M 123, N 409 with widths 20 and 30 give the published [110, 130] x [395, 425].
-GridBox SearchAround(const turntable::System& system, double width_M, double width_N);
+GridBox SearchAround(const System& system, double width_M, double width_N);
 
 struct SimulatedProfile {
   double alpha = 0;          // as recorded: with jitter
@@ -55,12 +88,11 @@ struct SimulatedPlacement {
 // Placements of a plate that lean by 5 to 20 degrees from the axis and are turned about it by up to +-25 degrees, 75 mm
 // in front of the profiler. Noise, form and background of each placement are streams of the seed: the same for any
 // number of placements, and none shifts the others.
-std::vector<SimulatedPlacement> SimulateTurntable(const TurntableScene& scene);
+std::vector<SimulatedPlacement> Simulate(const Scene& scene);
 
 enum class ScanFileFormat { kCsv, kNpy };
 // folder/dataset.yaml, folder/<placement>.csv and folder/truth.json. CSV rounds angles to 1e-6 deg, lengths to 0.1 um;
 // npy keeps every digit. Refuses scenes that cannot be seen (the profiler looks past a plate, counts below one).
-Result<void> WriteSimulatedTurntable(const TurntableScene& scene, ScanFileFormat format,
-                                     const std::filesystem::path& folder);
+Result<void> WriteSimulated(const Scene& scene, ScanFileFormat format, const std::filesystem::path& folder);
 
-}  // namespace scancal
+}  // namespace scancal::turntable

@@ -4,7 +4,7 @@
 #include <cmath>
 #include "tests/bench/comparisons.h"
 
-// As models/parts/moments.cc: what the processor has.
+// As models/line/moments.cc: what the processor has.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
 #define SCANCAL_FOR_EACH_PROCESSOR __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
@@ -46,7 +46,7 @@ void Compare(size_t points, Table* table) {
   const auto compress = [&] {
     double used = 0;
     for (size_t i = 0; i < points; i += kProfile)
-      used += CompressProfile(0.1, {y.data() + i, kProfile}, {z.data() + i, kProfile}, {}).factor(2, 2);
+      used += turntable::CompressProfile(0.1, {y.data() + i, kProfile}, {z.data() + i, kProfile}, {}).factor(2, 2);
     keep = used;
   };
   const auto sum = [&] { keep = Sum(y.data(), points) + Sum(z.data(), points); };

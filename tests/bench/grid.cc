@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include "models/turntable/zhao_2021.h"
 #include "tests/bench/comparisons.h"
+#include "tests/reference/zhao_2021.h"
 
 namespace scancal::bench {
 namespace {
@@ -64,7 +64,8 @@ void CompareGrid(const LargeData& data, Table* table) {
   Say("grid search: published, point by point");
   const std::vector<PlaneStorey> storeys = Storeys(data.placements);
   const auto rmse = [&](const std::array<double, 2>& at, std::span<double> values) {
-    for (size_t t = 0; t < values.size(); ++t) values[t] = storeys[t].Rmse(at[0], at[1], PlaneFit::kVertical);
+    for (size_t t = 0; t < values.size(); ++t)
+      values[t] = storeys[t].Rmse(at[0], at[1], turntable::PlaneFit::kVertical);
   };
   GridResult grid;
   const int placements = static_cast<int>(storeys.size());

@@ -10,7 +10,7 @@
 namespace scancal::bench {
 namespace {
 
-using Residuals = Turntable::Residuals;
+using Residuals = turntable::Model::Residuals;
 
 struct Ours {
   Problem problem;

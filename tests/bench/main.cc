@@ -27,7 +27,7 @@ void Run(const std::filesystem::path& folder, const std::filesystem::path& scipy
   CompareRobot(scipy_script.empty() ? "" : scipy_script.parent_path() / "scipy_robot.py", folder, &table);
   Say("three placements, three million points");
   LargeData data;
-  data.points = SimulateTurntable(LargeScene());
+  data.points = turntable::Simulate(LargeScene());
   data.placements = Compress(data.points);
   data.start = SearchStart(data.placements);
   CompareGrid(data, &table);

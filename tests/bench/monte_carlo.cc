@@ -18,13 +18,13 @@ void Consider(int quantity, double u, Problem* problem) {
 
 void CompareMonteCarlo(Table* table) {
   Say("Monte Carlo");
-  TurntableScene scene;  // as data/sample
+  turntable::Scene scene;  // as data/sample
   scene.encoder_jitter = 0.002 * kDegree;
-  const std::vector<Placement> placements = Compress(SimulateTurntable(scene));
+  const std::vector<Placement> placements = Compress(turntable::Simulate(scene));
   const Start start = SearchStart(placements);
-  Problem problem = BuildProblem(placements, start, Turntable::Residuals::kDepth);
-  Consider(Turntable::kNoiseY, scene.noise_y, &problem);
-  Consider(Turntable::kEncoderJitter, scene.encoder_jitter, &problem);
+  Problem problem = BuildProblem(placements, start, turntable::Model::Residuals::kDepth);
+  Consider(turntable::Model::kNoiseY, scene.noise_y, &problem);
+  Consider(turntable::Model::kEncoderJitter, scene.encoder_jitter, &problem);
   const Estimate from = StartOf(problem, start);
   Weigh(&problem, from);
   const Fit fit = Refine(problem, from);

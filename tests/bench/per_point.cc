@@ -8,11 +8,11 @@
 namespace scancal::bench {
 namespace {
 
-using Residuals = Turntable::Residuals;
+using Residuals = turntable::Model::Residuals;
 constexpr int kPolishSteps = 3;
 
 struct PointResidual {
-  const Turntable::Target* plane;  // where its normal starts
+  const turntable::Model::Target* plane;  // where its normal starts
   double cos_alpha, sin_alpha, y, z;
   Residuals kind;
 
@@ -31,7 +31,7 @@ struct PointResidual {
 };
 
 template <class Visit>
-void ForEachPoint(const SimulatedPlacement& placement, const Turntable::Target& plane, Residuals residuals,
+void ForEachPoint(const SimulatedPlacement& placement, const turntable::Model::Target& plane, Residuals residuals,
                   const Visit& visit) {
   for (const SimulatedProfile& profile : placement.profiles) {
     const double c = std::cos(profile.alpha), s = std::sin(profile.alpha);
@@ -41,7 +41,7 @@ void ForEachPoint(const SimulatedPlacement& placement, const Turntable::Target& 
 }
 
 // Rows (dr/dM, dr/dN, dr/downs of placement t, r) of one placement, added to the factor.
-void AddRows(const SimulatedPlacement& placement, const Turntable::Target& plane, Residuals residuals,
+void AddRows(const SimulatedPlacement& placement, const turntable::Model::Target& plane, Residuals residuals,
              const PerPointFit& fit, size_t t, TriangularFactor* factor) {
   using Jet = ceres::Jet<double, 5>;
   const Jet offsets[] = {Jet(fit.M, 0), Jet(fit.N, 1)};
@@ -69,7 +69,8 @@ void AddRows(const SimulatedPlacement& placement, const Turntable::Target& plane
 PerPointFit FitPerPoint(const std::vector<SimulatedPlacement>& points, const Start& start, Residuals residuals) {
   PerPointFit fit;
   double offsets[] = {start.M, start.N};
-  for (const Turntable::Target& plane : start.planes) fit.planes.insert(fit.planes.end(), {0, 0, plane.distance});
+  for (const turntable::Model::Target& plane : start.planes)
+    fit.planes.insert(fit.planes.end(), {0, 0, plane.distance});
   const double began = ProcessorSeconds();
   ceres::Problem problem;
   for (size_t t = 0; t < points.size(); ++t) {

@@ -14,10 +14,10 @@ struct PerPointFit {
 };
 
 PerPointFit FitPerPoint(const std::vector<SimulatedPlacement>& points, const Start& start,
-                        Turntable::Residuals residuals);
+                        turntable::Model::Residuals residuals);
 
 // Gauss-Newton steps by QR over all points: Ceres' normal equations leave the last digits undetermined.
-void Polish(const std::vector<SimulatedPlacement>& points, const Start& start, Turntable::Residuals residuals,
+void Polish(const std::vector<SimulatedPlacement>& points, const Start& start, turntable::Model::Residuals residuals,
             PerPointFit* fit);
 
 }  // namespace scancal::bench

@@ -44,10 +44,10 @@ std::string Rate(double bytes, double seconds) { return fmt::format("{:.0f} MB/s
 
 void CompareReading(const std::filesystem::path& folder, Table* table) {
   Say("reading CSV");
-  TurntableScene scene = LargeScene();
+  turntable::Scene scene = LargeScene();
   scene.placements = 1;
   scene.profiles = 3500;
-  const auto written = WriteSimulatedTurntable(scene, ScanFileFormat::kCsv, folder);
+  const auto written = turntable::WriteSimulated(scene, turntable::ScanFileFormat::kCsv, folder);
   CHECK(written.ok()) << written.error().message;
   const std::filesystem::path file = folder / "placement_1.csv";
   std::stringstream text;

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include "models/turntable/turntable_scanner.h"
+#include "models/turntable/scanner.h"
 #include "solver/random.h"
 #include "tests/bench/comparisons.h"
 
@@ -15,9 +15,9 @@ constexpr int kPlacements = 3;
 
 // Profiles of a plate with white noise, each compressed before the next is made: no more than one is ever held.
 std::vector<Placement> MakeCompressed(int profiles_per_placement, int points_per_profile) {
-  TurntableScene scene = LargeScene();
+  turntable::Scene scene = LargeScene();
   scene.profiles = scene.points = 1;  // for the planes
-  const std::vector<SimulatedPlacement> planes = SimulateTurntable(scene);
+  const std::vector<SimulatedPlacement> planes = turntable::Simulate(scene);
   std::vector<Placement> placements;
   std::vector<double> y(points_per_profile), z(points_per_profile);
   for (int t = 0; t < kPlacements; ++t) {
@@ -34,7 +34,7 @@ std::vector<Placement> MakeCompressed(int profiles_per_placement, int points_per
         y[i] =
             (planes[t].distance - planes[t].normal.dot(origin) - by_z * z[i]) / by_y + scene.noise_y * random.Normal();
       }
-      placement.profiles.push_back(CompressProfile(alpha, y, z, {}));
+      placement.profiles.push_back(turntable::CompressProfile(alpha, y, z, {}));
     }
     placement.largest = 1000;
   }
@@ -45,10 +45,10 @@ std::vector<Placement> MakeCompressed(int profiles_per_placement, int points_per
 std::vector<double> CalibrationSeconds(const std::vector<std::vector<Placement>>& cases) {
   std::vector<std::function<void()>> works;
   for (const std::vector<Placement>& placements : cases) {
-    TurntableDeclaration declaration;
+    turntable::Declaration declaration;
     declaration.search = {{110, 395}, {130, 425}, 1};
-    const auto scanner =
-        std::make_shared<const TurntableScanner>(declaration, Turntable(Turntable::Residuals::kDepth), placements);
+    const auto scanner = std::make_shared<const turntable::Scanner>(
+        declaration, turntable::Model(turntable::Model::Residuals::kDepth), placements);
     works.emplace_back([scanner] {
       const Result<Calibration> calibration = scanner->Calibrate({});
       CHECK(calibration.ok()) << calibration.error().message;

@@ -5,10 +5,10 @@
 
 namespace scancal::bench {
 
-TurntableScene LargeScene() {
-  TurntableScene scene;
-  scene.system[Turntable::kM] = 123.4;
-  scene.system[Turntable::kN] = 408.7;
+turntable::Scene LargeScene() {
+  turntable::Scene scene;
+  scene.system[turntable::Model::kM] = 123.4;
+  scene.system[turntable::Model::kN] = 408.7;
   scene.profiles = scene.points = 1000;
   scene.noise_y = 0.05;
   scene.seed = 1;
@@ -22,7 +22,7 @@ std::vector<Placement> Compress(const std::vector<SimulatedPlacement>& points) {
     placement.name = from.name;
     placement.profiles.reserve(from.profiles.size());
     for (const SimulatedProfile& profile : from.profiles)
-      placement.profiles.push_back(CompressProfile(profile.alpha, profile.y, profile.z, {}));
+      placement.profiles.push_back(turntable::CompressProfile(profile.alpha, profile.y, profile.z, {}));
   }
   return placements;
 }
@@ -38,23 +38,24 @@ Start SearchStart(const std::vector<Placement>& placements) {
   const GridResult grid = GridSearch({{110, 395}, {130, 425}, 1}, static_cast<int>(storeys.size()),
                                      [&](const std::array<double, 2>& at, std::span<double> rmse) {
                                        for (size_t t = 0; t < rmse.size(); ++t)
-                                         rmse[t] = storeys[t].Rmse(at[0], at[1], PlaneFit::kOrthogonal);
+                                         rmse[t] = storeys[t].Rmse(at[0], at[1], turntable::PlaneFit::kOrthogonal);
                                      });
   Start start{grid.best.at[0], grid.best.at[1], {}};
   for (size_t t = 0; t < storeys.size(); ++t) {
-    Turntable::Target& plane = start.planes.emplace_back();
+    turntable::Model::Target& plane = start.planes.emplace_back();
     plane.name = placements[t].name;
     const auto [normal, distance] = storeys[t].FitPlane(start.M, start.N);
-    Turntable::SetPlane(normal, distance, &plane);
+    turntable::Model::SetPlane(normal, distance, &plane);
   }
   return start;
 }
 
-Problem BuildProblem(const std::vector<Placement>& placements, const Start& start, Turntable::Residuals residuals) {
-  const auto model = std::make_shared<Turntable>(residuals);
-  std::vector<Turntable::Target> targets = start.planes;
-  for (size_t t = 0; t < targets.size(); ++t) targets[t].views = Views(placements[t].profiles, residuals);
-  return MakeProblem<Turntable>(model, std::move(targets));
+Problem BuildProblem(const std::vector<Placement>& placements, const Start& start,
+                     turntable::Model::Residuals residuals) {
+  const auto model = std::make_shared<turntable::Model>(residuals);
+  std::vector<turntable::Model::Target> targets = start.planes;
+  for (size_t t = 0; t < targets.size(); ++t) targets[t].views = turntable::Views(placements[t].profiles, residuals);
+  return MakeProblem<turntable::Model>(model, std::move(targets));
 }
 
 Estimate StartOf(const Problem& problem, const Start& start) {

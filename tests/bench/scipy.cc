@@ -7,11 +7,11 @@
 namespace scancal::bench {
 
 void WriteForScipy(const LargeData& data, const std::filesystem::path& folder) {
-  const auto written = WriteSimulatedTurntable(LargeScene(), ScanFileFormat::kNpy, folder);
+  const auto written = turntable::WriteSimulated(LargeScene(), turntable::ScanFileFormat::kNpy, folder);
   CHECK(written.ok()) << written.error().message;
   nlohmann::json start = {{"M", data.start.M}, {"N", data.start.N}};
   const auto list = [](const Eigen::Vector3d& v) { return std::vector{v[0], v[1], v[2]}; };
-  for (const Turntable::Target& plane : data.start.planes)
+  for (const turntable::Model::Target& plane : data.start.planes)
     start["planes"].push_back({{"file", plane.name + ".npy"},
                                {"normal", list(plane.normal)},
                                {"e1", list(plane.e1)},

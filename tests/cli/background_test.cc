@@ -1,4 +1,4 @@
-// Background behind the plate: set aside, counted, and without influence (specification of uncertainty, section 5).
+// Background behind the plate: set aside, counted, and without influence (docs/uncertainty.md, section 5).
 #include <gmock/gmock.h>
 #include "tests/cli/data_set.h"
 

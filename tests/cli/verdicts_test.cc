@@ -1,4 +1,4 @@
-// Refusals and verdicts by name: the table of the turntable's specification, section 6, through the program.
+// Refusals and verdicts by name: the table of docs/turntable.md, section 6, through the program.
 #include <gmock/gmock.h>
 #include "tests/cli/plane_scene.h"
 

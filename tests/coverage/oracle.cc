@@ -3,38 +3,40 @@
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <memory>
-#include "models/parts/correlated_noise.h"
+#include "models/line/noise.h"
 #include "solver/uncertainty/covariance.h"
 #include "solver/weigh.h"
 
 namespace scancal::coverage {
+
+using namespace turntable;
 namespace {
 
-void Set(Turntable::Index index, Role role, double u, Turntable* model) {
+void Set(Model::Index index, Role role, double u, Model* model) {
   model->quantity(index).role = u > 0 ? role : Role::kHold;
   model->quantity(index).u = u;
 }
 
-Turntable TrueModel(const TurntableScene& scene, double spread) {
-  Turntable model(Turntable::Residuals::kDepth);
-  model.quantity(Turntable::kM).value = scene.system.M();
-  model.quantity(Turntable::kN).value = scene.system.N();
+Model TrueModel(const Scene& scene, double spread) {
+  Model model(Model::Residuals::kDepth);
+  model.quantity(Model::kM).value = scene.system.M();
+  model.quantity(Model::kN).value = scene.system.N();
   const LineNoise excess = ExcessOfCorrelatedNoise(scene.line_correlation, scene.points, spread);
-  Set(Turntable::kNoiseY, Role::kConsider, scene.noise_y, &model);
-  Set(Turntable::kLineOffset, Role::kConsider, scene.noise_y * excess.offset, &model);
-  Set(Turntable::kLineSlope, Role::kConsider, scene.noise_y * excess.slope, &model);
-  Set(Turntable::kEncoderJitter, Role::kConsider, scene.encoder_jitter, &model);
+  Set(Model::kNoiseY, Role::kConsider, scene.noise_y, &model);
+  Set(Model::kLineOffset, Role::kConsider, scene.noise_y * excess.offset, &model);
+  Set(Model::kLineSlope, Role::kConsider, scene.noise_y * excess.slope, &model);
+  Set(Model::kEncoderJitter, Role::kConsider, scene.encoder_jitter, &model);
   for (int k = 0; k < kFormModes; ++k)
-    Set(static_cast<Turntable::Index>(Turntable::kForm + k), Role::kEstimate, scene.form, &model);
+    Set(static_cast<Model::Index>(Model::kForm + k), Role::kEstimate, scene.form, &model);
   return model;
 }
 
 }  // namespace
 
-Oracle::Oracle(const TurntableScene& scene) : scene_(scene) {
-  TurntableScene exact = scene;
+Oracle::Oracle(const Scene& scene) : scene_(scene) {
+  Scene exact = scene;
   exact.noise_y = exact.encoder_jitter = exact.form = exact.outliers = exact.missing = 0;
-  for (const SimulatedPlacement& placement : SimulateTurntable(exact)) {
+  for (const SimulatedPlacement& placement : Simulate(exact)) {
     Plate& plate = plates_.emplace_back();
     plate.normal = placement.normal;
     plate.distance = placement.distance;
@@ -70,15 +72,15 @@ std::vector<Oracle::Bend> Oracle::BendsOf(const Plate& plate, const std::vector<
 }
 
 Guess Oracle::Ask(const std::vector<Placement>& seen) const {
-  std::vector<Turntable::Target> targets;
+  std::vector<Model::Target> targets;
   for (size_t t = 0; t < seen.size(); ++t) {
     CHECK_EQ(seen[t].profiles.size(), plates_[t].bends.size()) << "a whole profile was set aside";
-    Turntable::Target& target = targets.emplace_back();
+    Model::Target& target = targets.emplace_back();
     target.name = seen[t].name;
-    target.views = Views(seen[t].profiles, Turntable::Residuals::kDepth);
-    Turntable::SetPlane(plates_[t].normal, plates_[t].distance, &target);
+    target.views = Views(seen[t].profiles, Model::Residuals::kDepth);
+    Model::SetPlane(plates_[t].normal, plates_[t].distance, &target);
     for (size_t v = 0; v < target.views.size(); ++v) {
-      Turntable::View& view = target.views[v];
+      Model::View& view = target.views[v];
       const Bend& bend = plates_[t].bends[v];
       view.form.resize(std::ssize(view.points), kFormModes);
       for (Eigen::Index i = 0; i < view.form.rows(); ++i)
@@ -86,8 +88,8 @@ Guess Oracle::Ask(const std::vector<Placement>& seen) const {
     }
   }
   const ProfileFactor& usual = seen[0].profiles[0].factor;
-  Problem problem = MakeProblem<Turntable>(
-      std::make_shared<const Turntable>(TrueModel(scene_, usual(1, 1) / usual(0, 0))), std::move(targets));
+  Problem problem = MakeProblem<Model>(std::make_shared<const Model>(TrueModel(scene_, usual(1, 1) / usual(0, 0))),
+                                       std::move(targets));
   const Estimate at_truth = NominalStart(problem);
   Weigh(&problem, at_truth);
   const Linearization linear = Linearize(problem, at_truth, Storey::kViews);

@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <vector>
-#include "models/turntable/placement.h"
+#include "models/turntable/compress.h"
 #include "models/turntable/simulate.h"
 
 namespace scancal::coverage {
@@ -17,8 +17,8 @@ struct Guess {            // of M, N; mm
 // of the declared modes. Linearised at the truth. Of a form that is not made of the modes it knows no more than we.
 class Oracle {
  public:
-  explicit Oracle(const TurntableScene& scene);
-  Guess Ask(const std::vector<Placement>& seen) const;  // what reading left of a data set of the scene
+  explicit Oracle(const turntable::Scene& scene);
+  Guess Ask(const std::vector<turntable::Placement>& seen) const;  // what reading left of a data set of the scene
 
  private:
   struct Bend {  // of a profile, by every mode: offset + slope z, the least squares line through the form at its points
@@ -29,9 +29,9 @@ class Oracle {
     double distance;
     std::vector<Bend> bends;  // per profile
   };
-  std::vector<Bend> BendsOf(const Plate& plate, const std::vector<SimulatedProfile>& profiles) const;
+  std::vector<Bend> BendsOf(const Plate& plate, const std::vector<turntable::SimulatedProfile>& profiles) const;
 
-  TurntableScene scene_;
+  turntable::Scene scene_;
   std::vector<Plate> plates_;
 };
 

@@ -37,9 +37,9 @@ class Scenes {
   }
 
   // Functions that are not among the modes of the declared ensemble.
-  Row OtherForm(double microns, FormKind kind) const {
+  Row OtherForm(double microns, turntable::FormKind kind) const {
     Row row = Form(microns);
-    row.name += kind == FormKind::kSmooth ? ", other functions" : ", bent plates";
+    row.name += kind == turntable::FormKind::kSmooth ? ", other functions" : ", bent plates";
     row.scene.form_kind = kind;
     row.most = 1;
     row.widest = std::numeric_limits<double>::infinity();
@@ -66,14 +66,14 @@ class Scenes {
   }
 
  private:
-  TurntableScene base_;
+  turntable::Scene base_;
 };
 
 }  // namespace
 
 std::vector<Row> Rows(double sweep_deg) {
   const Scenes of(sweep_deg);
-  using enum FormKind;
+  using enum turntable::FormKind;
   return {of.White(),
           of.Jitter(5),
           of.Jitter(20),

@@ -9,7 +9,7 @@ namespace scancal::coverage {
 
 struct Row {
   std::string name;
-  TurntableScene scene;                                     // the truth; every data set has a seed of its own
+  turntable::Scene scene;                                   // the truth; every data set has a seed of its own
   double declared_form = 0;                                 // mm rms
   double least = 0.93, most = 0.97;                         // wanted share of data sets that hold M, and N
   double widest = std::numeric_limits<double>::infinity();  // wanted median width against the oracle

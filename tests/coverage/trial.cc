@@ -1,11 +1,13 @@
 #include "tests/coverage/trial.h"
 #include <cmath>
 #include <limits>
-#include "models/turntable/turntable_scanner.h"
+#include "models/turntable/scanner.h"
 #include "solver/uncertainty/gum.h"
 #include "tests/in_parallel.h"
 
 namespace scancal::coverage {
+
+using namespace turntable;
 namespace {
 
 std::vector<RawScan> CleanScans(const std::vector<SimulatedPlacement>& placements) {
@@ -28,11 +30,11 @@ std::vector<RawScan> CleanScans(const std::vector<SimulatedPlacement>& placement
   return scans;
 }
 
-Turntable Declared(const Row& row) {
-  Turntable model(Turntable::Residuals::kDepth);
+Model Declared(const Row& row) {
+  Model model(Model::Residuals::kDepth);
   for (int k = 0; k < kFormModes && row.declared_form > 0; ++k) {
-    model.quantity(Turntable::kForm + k).role = Role::kConsider;
-    model.quantity(Turntable::kForm + k).u = row.declared_form;
+    model.quantity(Model::kForm + k).role = Role::kConsider;
+    model.quantity(Model::kForm + k).u = row.declared_form;
   }
   return model;
 }
@@ -41,13 +43,13 @@ Turntable Declared(const Row& row) {
 
 Trial Try(const Row& row, const Oracle& oracle, uint64_t seed) {
   static const double k = CoverageFactor(kCoverage, std::numeric_limits<double>::infinity());
-  TurntableScene scene = row.scene;
+  Scene scene = row.scene;
   scene.seed = seed;
-  const std::vector<SimulatedPlacement> placements = SimulateTurntable(scene);
-  TurntableDeclaration declaration;
+  const std::vector<SimulatedPlacement> placements = Simulate(scene);
+  Declaration declaration;
   declaration.search = scene.search;
   Trial trial;
-  const auto scanner = CompressTurntable(declaration, Declared(row), CleanScans(placements));
+  const auto scanner = Compress(declaration, Declared(row), CleanScans(placements));
   if (!scanner.ok()) {
     trial.unreliable.push_back(scanner.error().message);
     return trial;

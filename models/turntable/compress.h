@@ -1,0 +1,104 @@
+// What the points of a scan leave behind: profiles, and placements of the plate made of them. The points are gone
+// behind this line.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+#include "io/json_file.h"
+#include "io/result.h"
+#include "models/line/noise.h"
+#include "models/turntable.h"
+#include "models/turntable/scan.h"
+#include "solver/calibrate.h"
+
+namespace scancal::turntable {
+
+inline constexpr int kSegments = 8;
+
+struct Profile {
+  double alpha = 0;  // rad, clockwise seen from +Z
+  double count = 0;
+  // Of rows (1, z, y), for each eighth of the profile's extent in z that has points: where a smooth form of the plate
+  // bends a profile, its mean is not enough.
+  std::vector<ProfileFactor> segments;
+  ProfileFactor factor;                 // of all points: the segments, merged
+  std::optional<ProfileFactor> ranged;  // a lidar's: the same rows times the range at the profile's own line
+  PureError pure_error;                 // of depth (of range) about the profile's own line
+};
+
+// From what is kept to what follows from it: factor and pure error.
+Profile MakeProfile(double alpha, double count, std::vector<ProfileFactor> segments,
+                    const std::optional<ProfileFactor>& ranged);
+
+// Compresses one profile's points, in any order; fastest in that of z. range: a lidar's, empty for a profiler.
+Profile CompressProfile(double alpha, std::span<const double> y, std::span<const double> z,
+                        std::span<const double> range);
+
+// Of points of the profile, from its own least-squares line: along depth (a lidar's along the range), mm.
+std::vector<double> ResidualsFromLine(const Profile& profile, std::span<const double> y, std::span<const double> z);
+
+// The profiles as the model sees them, with the columns of errors that move a profile's line.
+std::vector<Model::View> Views(const std::vector<Profile>& profiles, Model::Residuals residuals);
+// For planes through the pseudo-points of a known system.
+std::vector<Model::View> PlaneViews(const std::vector<Profile>& profiles, const System& system);
+Eigen::Vector3d PointOf(const ProfileInTable<double>& in_table, const Model::View& profile, Eigen::Index point);
+
+// Errors that curve along a profile fill columns of the views, as the straight line that they look like there. What is
+// left of them bends the profile; that moves no plane, and is lost in the noise of single points.
+//
+// `bend`: eta^2, eta from -1 to 1 over the system's depths.
+void AddBend(const System& system, const std::vector<Profile>& profiles, std::vector<Model::View>* views);
+// `form`: the modes of FormModesAt. The plate's square is the rectangle that bounds the points as they lie on the plane
+// n . P = d: across the plate at right angles to the table's axis, and up. It starts from the placement's own points,
+// so one plate in all placements has one form only if its edges are in view.
+void AddForm(const std::vector<Profile>& profiles, const System& system, const Eigen::Vector3d& normal, double distance,
+             std::vector<Model::View>* views);
+
+struct Placement {
+  std::string name;
+  std::vector<Profile> profiles;
+  double missing = 0;                       // no return
+  std::map<std::string, double> set_aside;  // reason -> points
+  double largest = 0;                       // |coordinate|, mm, over all kept points
+  LagSums lag_sums;                         // of the residuals from each profile's own line, with three points or more
+  ResidualHistogram histogram;              // of the same, by their pooled standard deviation
+  std::string warning;                      // of reading; empty: none
+  double Points() const;
+  double Sweep() const;    // largest minus smallest angle, rad
+  PureError Pure() const;  // of all profiles
+  bool IsLidar() const { return !profiles.empty() && profiles.front().ranged.has_value(); }
+};
+
+PureError PureOf(const std::vector<Placement>& placements);  // of all of them
+
+// The readings over which scans extend.
+struct ScannedVolume {
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::array<double, 2> alpha{kInfinity, -kInfinity}, y = alpha, z = alpha;  // from, to; rad, mm
+  void Extend(double alpha, double y, double z);
+  // "y = 300 mm (scanned: 40 to 120 mm)" of the first coordinate that lies outside by more than a hundredth of the
+  // range; else empty.
+  std::string Beyond(double alpha, double y, double z) const;
+};
+// A profile is taken to end where an evenly spaced line of the same mean and spread does: its points are gone.
+ScannedVolume VolumeOf(const std::vector<Placement>& placements);
+
+// Orders the points of each profile along z and removes what is off its own line.
+void Clean(RawScan* scan);
+
+// Sets aside what is off the plane of most profiles, as `system` sees it, and compresses the rest.
+Placement CompressPlacement(const RawScan& scan, const System& system);
+
+// {"layout": what follows in plain words, "targets": [...], "sha256": of the text of segments, "segments": base64 of
+// little-endian float64}: what a result is recomputed from, years later and without the points. Every digit is kept:
+// the same placements come back, to the last bit.
+Result<Json> PlacementsToJson(const std::vector<Placement>& placements);
+// Refuses what is damaged, incomplete or no data of a turntable, in one sentence that names the file.
+Result<std::vector<Placement>> PlacementsFromJson(const Json& data, const std::string& file);
+
+}  // namespace scancal::turntable

@@ -1,0 +1,300 @@
+#include "models/turntable/declare.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <span>
+#include "io/message.h"
+#include "models/scanner.h"
+
+namespace scancal::turntable {
+namespace {
+
+// Longer search intervals than any turntable has: metres declared for millimetres.
+constexpr double kImplausibleOffset_mm = 20'000;
+constexpr double kMostNodes = 1e9;
+
+const std::map<std::string, Dimension, std::less<>> kColumns = {
+    {"angle", Dimension::kAngle}, {"bearing", Dimension::kAngle}, {"y", Dimension::kLength},
+    {"z", Dimension::kLength},    {"range", Dimension::kLength},  {"profile", Dimension::kNone}};
+
+Dimension DimensionOf(std::string_view column) {
+  const auto found = kColumns.find(column);
+  return found == kColumns.end() ? Dimension::kNone : found->second;
+}
+
+// Of a line or a column: 1 or more.
+bool IsWhole(double number) { return number >= 1 && number <= 1e9 && std::floor(number) == number; }
+
+std::optional<WideLayout> ReadLayout(YamlMap map) {
+  if (!map.Has("layout")) return std::nullopt;
+  YamlMap layout = map.Map("layout");
+  WideLayout wide;
+  wide.value = layout.Text("wide");
+  if (wide.value != "y" && wide.value != "range") layout.Fail("wide", "expected y or range");
+  wide.across = wide.value == "range" ? "bearing" : "z";
+  const auto column = [&](const char* key, int otherwise) {
+    const double number = layout.Number(key, otherwise);
+    if (IsWhole(number)) return static_cast<int>(number);
+    layout.Fail(key, "expected a column number, 1 or more");
+    return otherwise;
+  };
+  wide.angle_column = column("angle_column", 1);
+  wide.first_column = column("first_column", 2);
+  wide.start = layout.Number("start");
+  wide.step = layout.Number("step");
+  if (wide.step == 0) layout.Fail("step", "expected a step that is not zero");
+  return wide;
+}
+
+void ReadKeep(YamlMap target, const Units& units, ScanDeclaration* scan) {
+  if (!target.Has("keep")) return;
+  YamlMap keep = target.Map("keep");
+  for (const std::string& column : keep.Keys()) {
+    const std::array<double, 2> interval = keep.Interval(column);
+    if (column == "lines") {
+      if (IsWhole(interval[0]) && IsWhole(interval[1])) {
+        scan->format.lines = {static_cast<int64_t>(interval[0]), static_cast<int64_t>(interval[1])};
+      } else {
+        keep.Fail(column, "expected whole line numbers, the first line is 1");
+      }
+    } else {
+      const double unit = units.Of(DimensionOf(column));
+      scan->keep.push_back({column, interval[0] * unit, interval[1] * unit});
+    }
+  }
+}
+
+// Defaults for all targets stand at the top level, a target's own override them.
+ScanDeclaration ReadTarget(YamlMap target, const YamlMap& top, const Dataset& dataset) {
+  ScanDeclaration scan;
+  scan.name = target.Text("name");
+  if (scan.name.empty()) target.Fail("name", "expected a name");
+  scan.scan = target.Text("scan");
+  if (scan.scan.empty()) target.Fail("scan", "expected the path of a scan file");
+  scan.format.path = dataset.file.parent_path() / scan.scan;
+  scan.format.units = dataset.units;
+  for (YamlMap map : {top, target}) {
+    if (auto layout = ReadLayout(map)) scan.format.layout = layout;
+    if (map.Has("columns")) scan.format.npy_columns = map.Texts("columns");
+    if (map.Has("invalid")) scan.format.invalid = map.Number("invalid");
+  }
+  ReadKeep(target, dataset.units, &scan);
+  scan.format.one_of = {{"y", "z"}, {"bearing", "range"}};
+  for (const auto& [name, dimension] : kColumns) scan.format.columns.push_back({name, dimension, name == "angle"});
+  for (const KeepInterval& keep : scan.keep)
+    if (!kColumns.contains(keep.column)) scan.format.columns.push_back({keep.column, Dimension::kNone, true});
+  return scan;
+}
+
+bool SamePoints(const ScanDeclaration& a, const ScanDeclaration& b) {
+  return a.format.path.lexically_normal() == b.format.path.lexically_normal() && a.format.lines == b.format.lines &&
+         a.keep == b.keep;
+}
+
+GridBox ReadSearch(YamlMap top, const Units& units) {
+  YamlMap search = top.Map("search");
+  GridBox box;
+  const std::array<double, 2> m = search.Interval("M"), n = search.Interval("N");
+  for (size_t k = 0; k < 2; ++k) {
+    (k == 0 ? box.lower[0] : box.upper[0]) = m[k] * units.length_in_mm;
+    (k == 0 ? box.lower[1] : box.upper[1]) = n[k] * units.length_in_mm;
+  }
+  for (size_t k = 0; k < 2; ++k)
+    if (std::max(std::abs(box.lower[k]), std::abs(box.upper[k])) > kImplausibleOffset_mm)
+      search.Fail(k == 0 ? "M" : "N", fmt::format("that is {:.3g} m, expected less than 20 m; is units: length: right?",
+                                                  box.upper[k] / 1000));
+  box.step = search.Number("step") * units.length_in_mm;
+  if (!(box.step > 0)) {
+    search.Fail("step", "expected a step greater than zero");
+    box.step = 1;
+  }
+  double nodes = 1;
+  for (size_t k = 0; k < 2; ++k) nodes *= std::floor((box.upper[k] - box.lower[k]) / box.step) + 1;
+  if (nodes > kMostNodes)
+    search.Fail("step", fmt::format("that makes {:.3g} nodes, expected at most 1e9; use a larger step", nodes));
+  return box;
+}
+
+Result<void> SetParameters(const Dataset& dataset, Model* model) {
+  const std::span<Quantity> quantities(&model->quantity(0), model->quantities().size());
+  for (const ParameterSetting& setting : dataset.parameters) {
+    const std::string place = "parameters: " + setting.name + ": ";
+    if (setting.name == "yaw" || setting.name == "shift_z" || setting.name == "Z")
+      return InFile(dataset, place +
+                                 "not determined by planes (a turn about the axis or a shift along it moves the whole "
+                                 "scene); it is no parameter, remove it");
+    SCANCAL_ASSIGN_OR_RETURN(const int index, SetDeclared(setting, dataset, {}, Model::kTiltX, quantities));
+    if ((index == Model::kScaleY || index == Model::kScaleZ) && quantities[index].role == Role::kEstimate &&
+        quantities[index].u <= 0)
+      return InFile(dataset, place +
+                                 "not determined by planes (M, N, the distances and the normals absorb a scale "
+                                 "exactly); give a prior, {estimate: 0, u: ...}, or consider it");
+  }
+  return {};
+}
+
+// Median peak to valley of a surface of such modes over its rms, by simulation 6.3.
+constexpr double kPeakToValley = 6;
+
+// Those with a quantity of the same name and no rule of their own.
+const std::map<std::string, Model::Index> kInfluences = {{"noise_y", Model::kNoiseY},
+                                                         {"noise_z", Model::kNoiseZ},
+                                                         {"encoder_jitter", Model::kEncoderJitter},
+                                                         {"encoder_cos1", Model::kEncoderCos1},
+                                                         {"encoder_sin1", Model::kEncoderSin1},
+                                                         {"encoder_cos2", Model::kEncoderCos2},
+                                                         {"encoder_sin2", Model::kEncoderSin2},
+                                                         {"scale_y", Model::kScaleY},
+                                                         {"scale_z", Model::kScaleZ},
+                                                         {"shear", Model::kShear},
+                                                         {"linearity", Model::kLinearity}};
+const std::vector<std::string> kOthers = {"line_correlation", "form",        "flatness",
+                                          "one_plate",        "temperature", "expansion"};
+
+std::vector<std::string> InfluenceNames() {
+  std::vector<std::string> names = kOthers;
+  for (const auto& [name, index] : kInfluences) names.push_back(name);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// Sets role and u of the quantities that `influences:` names.
+class Influences {
+ public:
+  Influences(const Dataset& dataset, Model* model, Declaration* declaration)
+      : dataset_(dataset), model_(*model), declaration_(*declaration) {}
+
+  Result<void> SetAll() {
+    for (const InfluenceSetting& setting : dataset_.influences) SCANCAL_RETURN_IF_ERROR(Set(setting));
+    return SetExpansion();
+  }
+
+ private:
+  Error Wrong(const std::string& influence, const std::string& sentence) const {
+    return InFile(dataset_, "influences: " + influence + ": " + sentence);
+  }
+
+  Result<void> Set(const InfluenceSetting& setting) {
+    if (setting.name == "one_plate") return SetOnePlate(setting);
+    if (setting.role == "yes" || setting.role == "no")
+      return Wrong(setting.name, "found " + setting.role + ", expected a standard uncertainty");
+    if (setting.name == "line_correlation") return SetLineCorrelation(setting);
+    if (setting.name == "form" || setting.name == "flatness") return SetForm(setting);
+    if (setting.name == "temperature" || setting.name == "expansion") return KeepForExpansion(setting);
+    const auto found = kInfluences.find(setting.name);
+    if (found == kInfluences.end())
+      return Wrong(setting.name, "unknown influence" + Suggestion(setting.name, InfluenceNames()));
+    return SetQuantity(setting, found->second);
+  }
+
+  Result<void> SetQuantity(const InfluenceSetting& setting, Model::Index index) {
+    Quantity& quantity = model_.quantity(index);
+    const bool random = quantity.scope == Scope::kView || quantity.scope == Scope::kPoint;
+    if (!random && quantity.role != Role::kHold)
+      return Wrong(setting.name, "declared twice, here and under parameters");
+    if (!random && setting.role == "estimate" && setting.u == 0)
+      return Wrong(setting.name, "not determined by planes, expected its standard uncertainty in place of estimate");
+    if (random && setting.role == "estimate" && setting.u > 0)
+      return Wrong(setting.name, "its variance is estimated without a prior, expected estimate or a number");
+    if (index == Model::kNoiseZ && setting.role == "estimate")
+      return Wrong(setting.name,
+                   "expected its standard uncertainty in place of estimate: planes cannot tell it from noise_y");
+    quantity.u = setting.u * UnitFactor(quantity.unit, dataset_.units);
+    // Of what is random, none at all is a declaration too, which the residuals may contradict.
+    const bool told = random && index != Model::kNoiseZ;
+    quantity.role = setting.role == "estimate"                               ? Role::kEstimate
+                    : setting.role == "consider" && (told || quantity.u > 0) ? Role::kConsider
+                                                                             : Role::kHold;
+    if (index == Model::kNoiseY && quantity.u == 0 && setting.role != "estimate")
+      return Wrong(setting.name, "expected more than 0, or estimate: every point has noise");
+    return {};
+  }
+
+  Result<void> SetForm(const InfluenceSetting& setting) {
+    Quantity& first = model_.quantity(Model::kForm);
+    if (first.role != Role::kHold) return Wrong(setting.name, "expected form or flatness, not both");
+    if (setting.role == "estimate" && setting.u == 0)
+      return Wrong(setting.name, "expected its size: form and offset cannot be told apart by the data alone");
+    const double u = setting.u * dataset_.units.length_in_mm / (setting.name == "flatness" ? kPeakToValley : 1);
+    for (int k = 0; k < kFormModes && u > 0; ++k) {
+      model_.quantity(Model::kForm + k).role = setting.role == "estimate" ? Role::kEstimate : Role::kConsider;
+      model_.quantity(Model::kForm + k).u = u;
+    }
+    return {};
+  }
+
+  Result<void> SetOnePlate(const InfluenceSetting& setting) {
+    if (setting.role != "yes" && setting.role != "no") return Wrong(setting.name, "expected yes or no");
+    for (int k = 0; k < kFormModes && setting.role == "yes"; ++k)
+      model_.quantity(Model::kForm + k).scope = Scope::kSystem;
+    return {};
+  }
+
+  Result<void> SetLineCorrelation(const InfluenceSetting& setting) {
+    if (setting.role == "estimate") return {};
+    if (setting.u > 0 && setting.u < 1)
+      return Wrong(setting.name, "expected the integrated correlation length in points, 1 is white noise");
+    if (setting.role == "hold") {
+      for (const int k : {Model::kLineOffset, Model::kLineSlope}) model_.quantity(k).role = Role::kHold;
+    } else {
+      declaration_.line_correlation = std::max(1.0, setting.u);
+    }
+    return {};
+  }
+
+  Result<void> KeepForExpansion(const InfluenceSetting& setting) {
+    if (setting.role == "estimate") return Wrong(setting.name, "expected a number");
+    (setting.name == "temperature" ? temperature_ : expansion_) = setting.u;
+    return {};
+  }
+
+  // M and N are of a mount at 20 degrees Celsius, known to temperature_ kelvin.
+  Result<void> SetExpansion() {
+    if (temperature_.has_value() != expansion_.has_value())
+      return Wrong(temperature_ ? "temperature" : "expansion",
+                   "expected temperature (K) and expansion (1/K) together: u of the mount's temperature and its "
+                   "coefficient");
+    if (!temperature_ || *temperature_ * *expansion_ == 0) return {};
+    Quantity& quantity = model_.quantity(Model::kExpansion);
+    quantity.role = Role::kConsider;
+    quantity.u = *temperature_ * *expansion_;
+    return {};
+  }
+
+  const Dataset& dataset_;
+  Model& model_;
+  Declaration& declaration_;
+  std::optional<double> temperature_, expansion_;
+};
+
+}  // namespace
+
+Result<Declaration> Declare(const Dataset& dataset, Model* model) {
+  Declaration result;
+  result.dataset = dataset;
+  YamlMap top = dataset.yaml;
+  const std::string rotation = top.Text("rotation");
+  if (rotation != "clockwise" && rotation != "counterclockwise")
+    top.Fail("rotation", "expected clockwise or counterclockwise, seen from +Z of the table");
+  result.sense = rotation == "counterclockwise" ? -1 : 1;
+  result.search = ReadSearch(top, dataset.units);
+  std::set<std::string> names;
+  for (YamlMap target : top.Maps("targets")) {
+    result.scans.push_back(ReadTarget(target, top, dataset));
+    const ScanDeclaration& scan = result.scans.back();
+    for (size_t k = 0; k + 1 < result.scans.size(); ++k)
+      if (SamePoints(result.scans[k], scan))
+        target.Fail("scan",
+                    "expected other points than those of target " + result.scans[k].name + ", which has the same");
+    if (!names.insert(scan.name).second) target.Fail("name", "expected a name that no other target has");
+  }
+  if (result.scans.empty()) top.Fail("targets", "expected at least one target");
+  SCANCAL_RETURN_IF_ERROR(top.Finish());
+  SCANCAL_RETURN_IF_ERROR(SetParameters(dataset, model));
+  SCANCAL_RETURN_IF_ERROR(Influences(dataset, model, &result).SetAll());
+  return result;
+}
+
+}  // namespace scancal::turntable

@@ -1,0 +1,166 @@
+// What may go wrong with planes on a turntable.
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include "io/message.h"
+#include "models/turntable/scanner.h"
+
+namespace scancal::turntable {
+namespace {
+
+constexpr double kImplausibleLength_mm = 50e3;  // no plate is seen from farther away
+constexpr double kPerpendicular = 1 * kDegree;  // a plate's normal nearer to the axis tells nothing of M and N
+constexpr double kApart = 5 * kDegree;          // two placements are different
+constexpr double kNarrowSweep = 5 * kDegree;
+constexpr double kFarFromGrid = 5;  // of step and u
+constexpr double kEdgeOn = 0.02;    // cosine of the incidence
+
+// Smallest |n . d| over the profiles of a placement, d the direction along which the sensor measures.
+double LeastIncidence(const Placement& placement, const System& system, const Eigen::Vector3d& normal) {
+  double least = 1;
+  for (const Profile& profile : placement.profiles) {
+    const PseudoPoint p = PseudoPoints(profile.factor)[1];
+    const ProfileInTable<double> at = system.At(profile.alpha);
+    const Eigen::Vector3d sight =
+        placement.IsLidar() ? Eigen::Vector3d(at.along_y * p.y + at.along_z * p.z) : at.along_y;
+    least = std::min(least, std::abs(normal.dot(at.Turned(sight).normalized())));
+  }
+  return least;
+}
+
+// Largest angle between two normals, their signs aside.
+double LargestAngle(const JointFit& fit) {
+  double largest = 0;
+  for (size_t i = 0; i < fit.targets.size(); ++i)
+    for (size_t j = 0; j < i; ++j)
+      largest = std::max(largest, std::acos(std::min(1.0, std::abs(fit.Plane(i).first.dot(fit.Plane(j).first)))));
+  return largest;
+}
+
+const Parameter* LeastKnownLength(const Calibration& calibration) {
+  const Parameter* worst = nullptr;
+  for (const Parameter& p : calibration.parameters)
+    if (p.role == Role::kEstimate && p.unit == Unit::kMm && (!worst || p.u > worst->u)) worst = &p;
+  return worst;
+}
+
+void JudgeOrientations(const JointFit& fit, Calibration* calibration) {
+  const double angle = LargestAngle(fit);
+  const Parameter* worst = LeastKnownLength(*calibration);
+  if (angle >= kApart || !worst) return;
+  const std::string which = fit.targets.size() == 1
+                                ? "there is only one placement of the plate"
+                                : fmt::format("the normals of all placements lie within {:.2g} deg", angle / kDegree);
+  calibration->unreliable.push_back(
+      which + "; " + worst->name + fmt::format(" suffers most (u = {:.2g} mm); ", worst->u) +
+      "add a placement with the plate turned about the vertical by 20 deg or more against the others");
+}
+
+void JudgeSearch(const GridBox& box, const GridNode& least, Calibration* calibration) {
+  if (least.on_edge)
+    calibration->unreliable.push_back(
+        fmt::format("the grid minimum M = {:g}, N = {:g} mm lies on the edge of the search interval; "
+                    "widen search in dataset.yaml",
+                    least.at[0], least.at[1]));
+  for (const size_t k : {0, 1}) {
+    const Parameter* p = calibration->Find(k == 0 ? "M" : "N");
+    const double apart = std::abs(p->value - least.at[k]);
+    if (p->role == Role::kEstimate && !least.on_edge && apart > kFarFromGrid * (box.step + p->u))
+      calibration->unreliable.push_back(
+          fmt::format("{}: the grid minimum lies {:.3g} mm from the refined value, more than step and u explain: the "
+                      "noise pulls the search away, or the model lacks something",
+                      p->name, apart));
+    if (p->role == Role::kEstimate && (p->value < box.lower[k] || p->value > box.upper[k]) && !least.on_edge)
+      calibration->unreliable.push_back(fmt::format(
+          "{} = {:.6g} mm lies outside the search interval; widen search in dataset.yaml, or look at the scans",
+          p->name, p->value));
+  }
+}
+
+}  // namespace
+
+Result<void> CheckPlausible(const std::vector<Placement>& placements, const Units& units) {
+  double widest = 0, largest = 0;
+  for (const Placement& placement : placements) {
+    const double sweep = placement.Sweep();
+    widest = std::max(widest, sweep);
+    largest = std::max(largest, placement.largest);
+    if (sweep > std::numbers::pi)
+      return Error{
+          fmt::format("target {}: its angles span {:.4g} rad ({:.4g} deg), but a plane is seen over less than half "
+                      "a turn; is units: angle: {} right (degrees declared as rad?)",
+                      placement.name, sweep, sweep / kDegree, units.angle)};
+    if (placement.largest > kImplausibleLength_mm)
+      return Error{
+          fmt::format("target {}: found a coordinate of {:.4g} m, expected less than {:g} m; is units: length: {} "
+                      "right (mm declared as m?)",
+                      placement.name, placement.largest / 1000, kImplausibleLength_mm / 1000, units.length)};
+  }
+  if (largest < 1)
+    return Error{
+        fmt::format("the largest coordinate is {:.4g} mm, expected the size of a plate; is units: length: {} right "
+                    "(m declared as mm, mm as um?)",
+                    largest, units.length)};
+  if (widest == 0)
+    return Error{"M, N: not determined: every target has one angle only; the profiler must turn while it scans"};
+  if (widest < kDegree)
+    return Error{
+        fmt::format("the angles span {:.3g} deg, expected more than one; if the file holds radians (a sweep of "
+                    "{:.3g} deg), declare angle: rad",
+                    widest / kDegree, widest / kDegree / kDegree)};
+  for (const Placement& placement : placements)
+    if (placement.Sweep() == 0)
+      return Error{fmt::format("target {}: its plane is not determined: it needs profiles at two angles or more",
+                               placement.name)};
+  return {};
+}
+
+Result<void> CheckOrientations(const Quantities& quantities, const std::vector<Placement>& placements,
+                               const std::vector<PlaneStorey>& storeys, const System& system) {
+  bool all_perpendicular = true;
+  for (size_t t = 0; t < placements.size(); ++t) {
+    const Eigen::Vector3d normal = storeys[t].FitPlane(system.M(), system.N()).first;
+    all_perpendicular &= std::abs(normal.z()) > std::cos(kPerpendicular);
+  }
+  std::vector<std::string> names;
+  for (const int k : {Model::kM, Model::kN})
+    if (quantities[k].role == Role::kEstimate && quantities[k].u <= 0) names.push_back(quantities[k].name);
+  if (all_perpendicular && !names.empty())
+    return Error{Listed(names) +
+                 ": not determined: every plate is perpendicular to the axis, and such a plane looks the same "
+                 "for every offset; stand the plate up, 5 to 20 deg from the axis"};
+  return {};
+}
+
+Result<void> CheckIncidence(const std::vector<Placement>& placements, const System& system) {
+  for (const Placement& placement : placements) {
+    const Eigen::Vector3d normal = PlaneStorey(placement.profiles, system).FitPlane(system.M(), system.N()).first;
+    if (LeastIncidence(placement, system, normal) < kEdgeOn)
+      return Error{
+          "target " + placement.name +
+          ": the sensor sees the plate edge-on, where depth tells nothing; narrow its keep: angle, or leave it out"};
+  }
+  return {};
+}
+
+Result<void> CheckDetermined(const JointFit& fit) {
+  return scancal::CheckDetermined(
+      fit.solution.observability,
+      {"target", "its plane is not determined; it needs profiles at two angles or more", "these placements"});
+}
+
+void Judge(const GridBox& box, const std::vector<Placement>& placements, const GridResult& grid, const JointFit& fit,
+           Calibration* calibration) {
+  JudgeSearch(box, grid.best, calibration);
+  JudgeOrientations(fit, calibration);
+  double widest = 0;
+  for (const Placement& placement : placements) widest = std::max(widest, placement.Sweep());
+  if (widest < kNarrowSweep)
+    calibration->warnings.push_back(
+        fmt::format("the sweep of {:.2g} deg is too narrow to tell M and N well: a wider one is the cheapest gain; if "
+                    "the file holds radians, declare angle: rad",
+                    widest / kDegree));
+}
+
+}  // namespace scancal::turntable

@@ -1,0 +1,152 @@
+#include "models/turntable/scan.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include "io/message.h"
+#include "io/progress.h"
+#include "models/line/moments.h"
+
+namespace scancal::turntable {
+namespace {
+
+// Which rows of the batch every interval of `keep` keeps; y and z may be derived from bearing and range.
+Result<std::vector<char>> Kept(const ScanDeclaration& scan, const ScanBatch& batch, const SensorColumns& points) {
+  std::vector<char> kept(batch.size(), 1);
+  for (const KeepInterval& interval : scan.keep) {
+    const int found = batch.Find(interval.column);
+    const std::vector<double>* values = found >= 0               ? &batch.columns[found]
+                                        : interval.column == "y" ? &points.y
+                                        : interval.column == "z" ? &points.z
+                                                                 : nullptr;
+    if (!values)
+      return Error{scan.format.path.string() + ": keep: " + interval.column + ": no such column, found " +
+                   Listed(batch.names)};
+    for (size_t i = 0; i < kept.size(); ++i)
+      kept[i] &= (*values)[i] >= interval.lower && (*values)[i] <= interval.upper;
+  }
+  return kept;
+}
+
+// Groups points into profiles as they come.
+class Gatherer {
+ public:
+  explicit Gatherer(const std::filesystem::path& path) : path_(path) {}
+
+  Result<void> Add(double alpha, const double* key, double y, double z, const double* range) {
+    RawProfile* profile = key ? ByKey(*key, alpha) : ByAngle(alpha);
+    by_key_ = key != nullptr;
+    if (profile->alpha != alpha) {
+      return Error{fmt::format("{}: profile {:g}: found angles {:.9g} and {:.9g} rad, expected one angle a profile",
+                               path_.string(), *key, profile->alpha, alpha)};
+    }
+    profile->y.push_back(y);
+    profile->z.push_back(z);
+    if (range) profile->range.push_back(*range);
+    return {};
+  }
+
+  bool by_key() const { return by_key_; }
+
+  std::vector<RawProfile> Take() {
+    std::stable_sort(profiles_.begin(), profiles_.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+    return std::move(profiles_);
+  }
+
+ private:
+  RawProfile* ByAngle(double alpha) {
+    if (profiles_.empty() || profiles_.back().alpha != alpha)
+      profiles_.push_back({static_cast<double>(profiles_.size()), alpha, {}, {}, {}});
+    return &profiles_.back();
+  }
+  RawProfile* ByKey(double key, double alpha) {
+    if (!profiles_.empty() && profiles_[last_].key == key) return &profiles_[last_];
+    const auto [found, fresh] = index_.try_emplace(key, profiles_.size());
+    if (fresh) profiles_.push_back({key, alpha, {}, {}, {}});
+    last_ = found->second;
+    return &profiles_[last_];
+  }
+
+  std::filesystem::path path_;
+  std::vector<RawProfile> profiles_;
+  std::map<double, size_t> index_;
+  size_t last_ = 0;
+  bool by_key_ = false;
+};
+
+bool LooksShuffled(const std::vector<RawProfile>& profiles) {
+  double points = 0;
+  std::set<double> angles;
+  for (const RawProfile& profile : profiles) {
+    points += static_cast<double>(profile.y.size());
+    angles.insert(profile.alpha);
+  }
+  return points < 2 * static_cast<double>(profiles.size()) && 3 * angles.size() < profiles.size();
+}
+
+}  // namespace
+
+void OrderAlongLine(RawProfile* profile) {
+  const std::vector<double>& z = profile->z;
+  if (IsAscending(z.data(), z.size())) return;
+  std::vector<size_t> order(z.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return z[a] < z[b]; });
+  const RawProfile from = *profile;
+  for (const auto column : {&RawProfile::y, &RawProfile::z, &RawProfile::range})
+    for (size_t i = 0; i < (from.*column).size(); ++i) (profile->*column)[i] = (from.*column)[order[i]];
+}
+
+SensorColumns ToSensor(double sense, const ScanBatch& batch) {
+  SensorColumns points;
+  points.alpha = batch.columns[batch.Find("angle")];
+  for (double& alpha : points.alpha) alpha *= sense;
+  const int y = batch.Find("y"), z = batch.Find("z"), bearing = batch.Find("bearing"), range = batch.Find("range");
+  if (bearing >= 0 && range >= 0) {
+    points.range = batch.columns[range];
+    points.y.resize(batch.size());
+    points.z.resize(batch.size());
+    for (size_t i = 0; i < batch.size(); ++i) {
+      points.y[i] = points.range[i] * std::cos(batch.columns[bearing][i]);
+      points.z[i] = points.range[i] * std::sin(batch.columns[bearing][i]);
+    }
+  } else {  // the reader has made sure of them
+    points.y = batch.columns[y];
+    points.z = batch.columns[z];
+  }
+  return points;
+}
+
+Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense) {
+  SCANCAL_ASSIGN_OR_RETURN(const auto reader, ScanReader::Open(scan.format));
+  Progress progress("reading " + scan.scan);
+  Gatherer gatherer(scan.format.path);
+  ScanBatch batch;
+  for (;;) {
+    SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
+    if (!more) break;
+    const SensorColumns points = ToSensor(sense, batch);
+    SCANCAL_ASSIGN_OR_RETURN(const std::vector<char> kept, Kept(scan, batch, points));
+    const int profile = batch.Find("profile");
+    for (size_t i = 0; i < batch.size(); ++i) {
+      if (!kept[i]) continue;
+      SCANCAL_RETURN_IF_ERROR(gatherer.Add(points.alpha[i], profile >= 0 ? &batch.columns[profile][i] : nullptr,
+                                           points.y[i], points.z[i],
+                                           points.range.empty() ? nullptr : &points.range[i]));
+    }
+    progress.Show(static_cast<double>(reader->bytes_read()) /
+                  static_cast<double>(std::max<int64_t>(1, reader->bytes_total())));
+  }
+  RawScan result{scan.name, gatherer.Take(), static_cast<double>(reader->missing()), 0, ""};
+  if (result.profiles.empty())
+    return Error{scan.format.path.string() + ": target " + scan.name + ": no point is left; widen its keep: intervals"};
+  if (!gatherer.by_key() && LooksShuffled(result.profiles))
+    result.warning = "target " + scan.name +
+                     ": most profiles hold one point and their angles recur; if the points are not in the order of the "
+                     "profiles, add a column profile, or u is too small";
+  return result;
+}
+
+}  // namespace scancal::turntable
