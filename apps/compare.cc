@@ -20,7 +20,7 @@ Result<Comparison> Compared(const std::vector<std::string>& arguments) {
   return scanner->Compare({});
 }
 
-int Run(const std::vector<std::string>& arguments) {
+int RunCompare(const std::vector<std::string>& arguments) {
   const Result<Comparison> comparison = Compared(arguments);
   if (!comparison.ok()) return Complain(comparison.error().message);
   std::printf("%s", ToText(*comparison).c_str());
@@ -33,6 +33,6 @@ const Command kCompareCommand = {"compare",
                                  "DATASET",
                                  "the published grid search and the joint refinements on the same data, one table",
                                  {{"surface"}},
-                                 &Run};
+                                 &RunCompare};
 
 }  // namespace scancal

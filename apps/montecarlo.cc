@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMostAtTwoDigits = 1'000'000;
 
-int Run(const std::vector<std::string>& arguments) {
+int RunMonteCarlo(const std::vector<std::string>& arguments) {
   if (FLAGS_digits != 1 && FLAGS_digits != 2)
     return Complain("--digits: found " + std::to_string(FLAGS_digits) + ", expected 1 or 2");
   if (FLAGS_threads < 0 || FLAGS_threads > 1000)
@@ -39,6 +39,6 @@ const Command kMonteCarloCommand = {"montecarlo",
                                      {"seed", "of all draws: the same seed gives the same digits"},
                                      {"digits"},
                                      {"threads"}},
-                                    &Run};
+                                    &RunMonteCarlo};
 
 }  // namespace scancal

@@ -40,7 +40,7 @@ Result<bool> Propagated(const std::string& file) {
   return calibration.ok();
 }
 
-int Run(const std::vector<std::string>& arguments) {
+int RunPropagate(const std::vector<std::string>& arguments) {
   if (arguments.size() != 1)
     return Complain("found " + std::to_string(arguments.size()) + " arguments, expected one: a calibration.json");
   const Result<bool> trusted = Propagated(arguments[0]);
@@ -54,7 +54,7 @@ const Command kPropagateCommand = {"propagate",
                                    "CALIBRATION",
                                    "uncertainty of points and distances that the calibrated scanner measures",
                                    {{"point"}, {"points_file"}, {"units"}, {"distance"}, {"out", "CSV file to write"}},
-                                   &Run};
+                                   &RunPropagate};
 
 }  // namespace scancal
 

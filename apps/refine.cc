@@ -14,7 +14,7 @@ DEFINE_int32(montecarlo, 0, "trials of a Monte Carlo with seed 1, see scancal mo
 namespace scancal {
 namespace {
 
-int Run(const std::vector<std::string>& arguments) {
+int RunRefine(const std::vector<std::string>& arguments) {
   if (FLAGS_max_iterations < 1) return Complain("--max_iterations: expected 1 or more");
   if (FLAGS_weights != "estimated" && FLAGS_weights != "equal")
     return Complain("--weights: found \"" + FLAGS_weights + "\", expected estimated or equal");
@@ -39,6 +39,6 @@ const Command kRefineCommand = {
      {"weights"},
      {"max_iterations"},
      {"montecarlo"}},
-    &Run};
+    &RunRefine};
 
 }  // namespace scancal

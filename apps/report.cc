@@ -14,7 +14,7 @@ DEFINE_string(language, "en", "of the page: en or de");
 namespace scancal {
 namespace {
 
-int Run(const std::vector<std::string>& arguments) {
+int RunReport(const std::vector<std::string>& arguments) {
   if (arguments.size() != 1)
     return Complain("found " + std::to_string(arguments.size()) + " arguments, expected one: a calibration.json");
   const Result<void> spoken = CheckLanguage();
@@ -52,6 +52,6 @@ const Command kReportCommand = {
      {"dcc"},
      {"previous"},
      {"language"}},
-    &Run};
+    &RunReport};
 
 }  // namespace scancal

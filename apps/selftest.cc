@@ -10,7 +10,7 @@ DEFINE_string(nist, "", "folder with the 27 .dat files of NIST's certified nonli
 namespace scancal {
 namespace {
 
-int Run(const std::vector<std::string>& arguments) {
+int RunSelftest(const std::vector<std::string>& arguments) {
   if (!arguments.empty()) return Complain("selftest takes no argument; the folder of NIST's files is given by --nist");
   Selftest result{selftest::OwnCases()};
   if (FLAGS_nist.empty()) {
@@ -26,7 +26,10 @@ int Run(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-const Command kSelftestCommand = {
-    "selftest", "", "the program's arithmetic against known answers: digits reached, pass or fail", {{"nist"}}, &Run};
+const Command kSelftestCommand = {"selftest",
+                                  "",
+                                  "the program's arithmetic against known answers: digits reached, pass or fail",
+                                  {{"nist"}},
+                                  &RunSelftest};
 
 }  // namespace scancal

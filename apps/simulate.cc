@@ -168,7 +168,7 @@ std::vector<CommandFlag> Flags() {
   return flags;
 }
 
-int Run(const std::vector<std::string>& arguments) {
+int RunSimulate(const std::vector<std::string>& arguments) {
   if (!arguments.empty()) return Complain("simulate takes no argument; the folder is given by --out");
   if (FLAGS_out.empty()) return Complain("--out: expected the folder to write");
   int (*run)() = nullptr;
@@ -187,6 +187,6 @@ int Run(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-const Command kSimulateCommand = {"simulate", "", "write a data set with known truth", Flags(), &Run};
+const Command kSimulateCommand = {"simulate", "", "write a data set with known truth", Flags(), &RunSimulate};
 
 }  // namespace scancal

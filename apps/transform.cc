@@ -27,7 +27,7 @@ Result<int64_t> Transformed(const std::vector<std::string>& arguments) {
   return points;
 }
 
-int Run(const std::vector<std::string>& arguments) {
+int RunTransform(const std::vector<std::string>& arguments) {
   if (FLAGS_out.empty()) return Complain("--out: expected a file name that ends in .ply, .csv or .npy");
   const Result<int64_t> points = Transformed(arguments);
   if (!points.ok()) return Complain(points.error().message);
@@ -42,6 +42,6 @@ const Command kTransformCommand = {
     "DATASET",
     "the scans as one point cloud in the table frame: .ply, .csv or .npy by the name of --out",
     {{"calibration"}, {"out", "point cloud to write: a name that ends in .ply, .csv or .npy"}},
-    &Run};
+    &RunTransform};
 
 }  // namespace scancal

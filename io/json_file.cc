@@ -71,7 +71,7 @@ void Append(const Json& json, const std::string& indent, std::string* text) {
 
 constexpr char kAlphabet[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 constexpr size_t kMost = size_t{1} << 30;  // OpenSSL counts in int
-constexpr size_t kBlock = size_t{3} << 20;
+constexpr size_t kPiece = size_t{3} << 20;
 
 const unsigned char* Unsigned(std::string_view text) { return reinterpret_cast<const unsigned char*>(text.data()); }
 
@@ -110,8 +110,8 @@ Result<void> WriteJson(const std::filesystem::path& path, const Json& json) {
 
 std::string ToBase64(std::string_view bytes) {
   std::string text;
-  for (size_t at = 0; at < bytes.size(); at += kBlock) {
-    const std::string_view block = bytes.substr(at, kBlock);
+  for (size_t at = 0; at < bytes.size(); at += kPiece) {
+    const std::string_view block = bytes.substr(at, kPiece);
     const size_t filled = text.size();
     text.resize(filled + (block.size() + 2) / 3 * 4 + 1);  // and the zero that OpenSSL appends
     const int written = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()) + filled, Unsigned(block),

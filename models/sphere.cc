@@ -1,11 +1,10 @@
 #include "models/sphere.h"
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 #include "models/median.h"
+#include "solver/dense.h"
 #include "solver/linearize.h"
 #include "solver/model.h"
 #include "solver/random.h"
@@ -56,11 +55,11 @@ struct Start {
 // p: from their mean.
 Start ClosedForm(const PointRows& p, const SphereChoice& choice, const Eigen::Vector3d& outside) {
   const double spread = p.rowwise().squaredNorm().mean();
-  Eigen::MatrixX4d rows(p.rows(), 4);
+  Eigen::MatrixXd rows(p.rows(), 4);
   rows << 2 * p, Eigen::VectorXd::Ones(p.rows());
-  Eigen::Vector3d centre = rows.completeOrthogonalDecomposition().solve(p.rowwise().squaredNorm().matrix()).head<3>();
+  Eigen::Vector3d centre = LeastSquares(rows, p.rowwise().squaredNorm()).topRows<3>();
   // Along the normal of the cap the centre is least certain: there a known radius and side take its place.
-  const Eigen::Vector3d normal = p.jacobiSvd(Eigen::ComputeFullV).matrixV().col(2);
+  const Eigen::Vector3d normal = SvdOf(p).v.col(2);
   const Eigen::Vector3d across = centre - normal * normal.dot(centre);
   double height = normal.dot(centre);
   if (choice.radius)
@@ -76,7 +75,7 @@ std::string Doubt(const Fit& fit, const Observability& seen) {
   return fit.converged ? "" : fit.message;
 }
 
-constexpr size_t kFewest = 8, kSubsample = 400;
+constexpr size_t kFewest = 8, kPointsTried = 400;
 constexpr int kDraws = 200, kRounds = 20;
 constexpr double kRounding_mm = 1e-9;  // nearer than this is on the sphere
 
@@ -85,6 +84,7 @@ struct Ball {  // a candidate
   double radius;
   double Off(const Eigen::Vector3d& p) const { return std::abs((p - centre).norm() - radius); }
 };
+
 using Points = std::vector<Eigen::Vector3d>;
 
 // Through four points; none, or a wild one, if they lie on a circle.
@@ -125,7 +125,7 @@ Ball LeastMedian(std::span<const Eigen::Vector3d> points, const SphereChoice& ch
   Random random(1, points.size());
   const auto draw = [&] { return points[static_cast<size_t>(random.Uniform() * static_cast<double>(points.size()))]; };
   Points sample;
-  const size_t n = std::min(points.size(), kSubsample);
+  const size_t n = std::min(points.size(), kPointsTried);
   for (size_t k = 0; k < n; ++k) sample.push_back(points[k * points.size() / n]);
   std::vector<Ball> balls;
   for (int k = 0; k < kDraws; ++k) {

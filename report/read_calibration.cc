@@ -1,7 +1,7 @@
-#include <Eigen/Eigenvalues>
 #include <limits>
 #include <optional>
 #include "report/calibration_json.h"
+#include "solver/dense.h"
 
 namespace scancal {
 namespace {
@@ -98,7 +98,7 @@ bool IsCovariance(const Eigen::MatrixXd& matrix) {
   const Eigen::VectorXd scale = (u.array() > 0).select(u.cwiseInverse(), 0.0);
   const Eigen::MatrixXd correlation = scale.asDiagonal() * matrix * scale.asDiagonal();
   if ((correlation - correlation.transpose()).cwiseAbs().maxCoeff() > kRounding) return false;
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation).eigenvalues()[0] > -kRounding;
+  return EigenOf(correlation).values[0] > -kRounding;
 }
 
 bool ReadBudget(const Json& json, Calibration* calibration) {

@@ -1,7 +1,6 @@
 #include "solver/calibrate.h"
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include "solver/judge.h"
 #include "solver/uncertainty/budget.h"
 #include "solver/uncertainty/gum.h"
@@ -10,8 +9,6 @@
 
 namespace scancal {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 BudgetLine Line(const std::string& source, char type, Unit unit, double u, const Eigen::VectorXd& sensitivity,
                 const Eigen::MatrixXd& covariance, double dof) {

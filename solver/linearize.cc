@@ -1,14 +1,10 @@
 #include "solver/linearize.h"
 #include <glog/logging.h>
-#include <Eigen/QR>
-#include <Eigen/SVD>
+#include "solver/dense.h"
 #include "solver/triangular_factor.h"
 
 namespace scancal {
 namespace {
-
-// Columns of an own Jacobian that differ from a combination of the others by less than this are not determined.
-constexpr double kRankTolerance = 1e-10;
 
 void Eliminate(const Eigen::MatrixXd& own, Eigen::MatrixXd system, LinearTarget* target) {
   const Eigen::Index rows = own.rows(), n = own.cols();
@@ -17,9 +13,9 @@ void Eliminate(const Eigen::MatrixXd& own, Eigen::MatrixXd system, LinearTarget*
     target->system_left = std::move(system);
     return;
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(own);
-  target->q = qr.householderQ() * Eigen::MatrixXd::Identity(rows, n);
-  target->own_factor = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  ThinQr qr = QrOf(own);
+  target->q = std::move(qr.q);
+  target->own_factor = std::move(qr.r);
   for (Eigen::Index k = 0; k < n; ++k)
     if (std::abs(target->own_factor(k, k)) <= kRankTolerance * own.col(k).norm()) target->own_determined = false;
   target->coupling = target->q.transpose() * system;
@@ -157,15 +153,15 @@ Observability Observe(const Problem& problem, const Linearization& linear) {
   const std::vector<int> system = problem.With({Scope::kSystem}, Role::kEstimate);
   if (system.empty()) return result;
   const Eigen::VectorXd scale = linear.system_norm.cwiseMax(1e-300).cwiseInverse();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(linear.factor * scale.asDiagonal(), Eigen::ComputeFullV);
-  result.singular = svd.singularValues();
+  const Svd svd = SvdOf(linear.factor * scale.asDiagonal());
+  result.singular = svd.values;
   const Eigen::Index last = result.singular.size() - 1;
   result.condition = result.singular[0] / result.singular[last];
-  result.weakest = svd.matrixV().col(last);
+  result.weakest = svd.v.col(last);
   for (size_t k = 0; k < system.size(); ++k) {
     bool found = false;
     for (Eigen::Index i = 0; i <= last; ++i)
-      found |= result.singular[i] < kNoEffect && std::abs(svd.matrixV()(static_cast<Eigen::Index>(k), i)) > kTakesPart;
+      found |= result.singular[i] < kNoEffect && std::abs(svd.v(static_cast<Eigen::Index>(k), i)) > kTakesPart;
     if (found) result.undetermined.push_back(problem.quantities[system[k]].name);
   }
   return result;

@@ -8,6 +8,8 @@
 
 namespace scancal {
 
+inline constexpr double kRankTolerance = 1e-10;  // of what is left of a column, over the column
+
 enum class Storey { kViews, kNodes };
 
 // The rows of one target, J = [own, system], after QR of the part of its own quantities:
@@ -23,7 +25,7 @@ struct LinearTarget {
   Eigen::MatrixXd own_factor;       // own x own, upper triangular R
   Eigen::MatrixXd coupling;         // own x system
   Eigen::MatrixXd system_left;      // rows x system
-  bool own_determined = true;       // R has full rank: no column of own is a combination of the others to 1e-10
+  bool own_determined = true;  // R has full rank: no column of own is a combination of the others to kRankTolerance
 };
 
 // Time and memory are linear in the views. The last entry of targets holds the priors of the system; it owns nothing.

@@ -1,6 +1,6 @@
 #include "solver/triangular_factor.h"
-#include <Eigen/QR>
 #include <algorithm>
+#include "solver/dense.h"
 
 namespace scancal {
 
@@ -29,8 +29,7 @@ const Eigen::MatrixXd& TriangularFactor::R() const {
 void TriangularFactor::Fold() const {
   const Eigen::Index columns = stack_.cols();
   if (filled_ == columns) return;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stack_.topRows(filled_));
-  r_ = qr.matrixQR().topRows(columns).triangularView<Eigen::Upper>();
+  r_ = UpperTriangle(stack_.topRows(filled_));
   stack_.topRows(columns) = r_;
   filled_ = columns;
 }

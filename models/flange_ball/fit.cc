@@ -1,5 +1,4 @@
 #include "models/flange_ball/fit.h"
-#include <Eigen/QR>
 #include <algorithm>
 #include <memory>
 #include "models/scanner.h"

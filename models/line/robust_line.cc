@@ -12,17 +12,17 @@ constexpr size_t kSubsample = 48;
 constexpr size_t kFewestPoints = 5;
 constexpr double kWithin = 6;  // scales
 
-struct Points {
+struct Ordered {
   std::vector<double> y, z;
 };
 
 // Every so-many-th point in the order of z: the same points for any order of the input.
-Points OrderedSubsample(std::span<const double> y, std::span<const double> z) {
+Ordered OrderedSubsample(std::span<const double> y, std::span<const double> z) {
   std::vector<size_t> order(y.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return z[a] != z[b] ? z[a] < z[b] : y[a] < y[b]; });
   const size_t n = std::min(order.size(), kSubsample);
-  Points sample;
+  Ordered sample;
   for (size_t k = 0; k < n; ++k) {
     const size_t i = order[k * order.size() / n + order.size() / n / 2];
     sample.y.push_back(y[i]);
@@ -40,7 +40,7 @@ double MedianDistance(const RobustLine& line, std::span<const double> y, std::sp
   return *middle;
 }
 
-RobustLine Through(const Points& points, size_t i, size_t j) {
+RobustLine Through(const Ordered& points, size_t i, size_t j) {
   const double dy = points.y[j] - points.y[i], dz = points.z[j] - points.z[i], length = std::hypot(dy, dz);
   if (!(length > 0)) return {points.y[i], points.z[i], 0, 1, 0};
   return {points.y[i], points.z[i], dy / length, dz / length, 0};
@@ -67,7 +67,7 @@ RobustLine FitRobustLine(std::span<const double> y, std::span<const double> z) {
   const size_t n = y.size();
   if (n < kFewestPoints)
     return Refit({n ? y[0] : 0, n ? z[0] : 0, 0, 1, 0}, std::numeric_limits<double>::infinity(), y, z);
-  const Points sample = OrderedSubsample(y, z);
+  const Ordered sample = OrderedSubsample(y, z);
   const size_t size = sample.y.size();
   std::vector<double> buffer;
   RobustLine best;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMostOff = 0.4;  // logarithm of half as much again
 
-struct Pair {
+struct BallPair {
   int a, b;
   double distance, u;
   size_t row;
@@ -19,7 +19,7 @@ struct Pair {
 struct Pairs {
   Table table;
   std::vector<std::string> balls;
-  std::vector<Pair> pairs;
+  std::vector<BallPair> pairs;
 };
 
 Result<Pairs> ReadPairs(const std::filesystem::path& path, const Units& units) {
@@ -38,8 +38,8 @@ Result<Pairs> ReadPairs(const std::filesystem::path& path, const Units& units) {
     return static_cast<int>(found);
   };
   for (size_t row = 0; row < table.rows(); ++row) {
-    Pair pair{index(table.Text("ball_a", row)), index(table.Text("ball_b", row)), table.Number("distance", row), 0,
-              row};
+    BallPair pair{index(table.Text("ball_a", row)), index(table.Text("ball_b", row)), table.Number("distance", row), 0,
+                  row};
     if (table.Has("u")) pair.u = table.Number("u", row);
     if (std::isnan(pair.u)) pair.u = 0;
     if (pair.a == pair.b) return table.Wrong(row, "ball_b", "found the same ball twice, expected two");
@@ -58,7 +58,7 @@ Model::View Only(const Model::View& view, int ball) {
 }
 
 // Of poses of one station; false: it did not see both balls.
-bool FindPoses(const Station& station, const Pair& pair, CheckLength* length) {
+bool FindPoses(const Station& station, const BallPair& pair, CheckLength* length) {
   const auto saw = [](int ball) {
     return [ball](const Model::View& view) {
       return std::any_of(view.balls.begin(), view.balls.end(), [&](const auto& seen) { return seen.sphere == ball; });
@@ -76,7 +76,7 @@ bool FindPoses(const Station& station, const Pair& pair, CheckLength* length) {
 }
 
 // The distance in the frame of the scanner, where one pose saw both balls, over the true one; 1 where none did.
-double RatioWithinAPose(const Station& station, const Pair& pair) {
+double RatioWithinAPose(const Station& station, const BallPair& pair) {
   for (const Model::View& view : station.views) {
     const Model::View a = Only(view, pair.a), b = Only(view, pair.b);
     if (!a.balls.empty() && !b.balls.empty()) return (a.balls[0].centre - b.balls[0].centre).norm() / pair.distance;
@@ -97,7 +97,7 @@ Result<CheckLengths> ReadCheck(const CheckFiles& paths, const std::filesystem::p
   result.files = std::move(observations.files);
   result.warnings = std::move(observations.warnings);
   size_t from_one_pose = 0;
-  for (const Pair& pair : pairs.pairs) {
+  for (const BallPair& pair : pairs.pairs) {
     const std::string name =
         pairs.balls[static_cast<size_t>(pair.a)] + " - " + pairs.balls[static_cast<size_t>(pair.b)];
     const size_t before = result.lengths.size();

@@ -1,6 +1,5 @@
 #include "models/robot_ball/judge.h"
 #include <fmt/format.h>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -9,6 +8,7 @@
 #include "models/chain/declare.h"
 #include "models/median.h"
 #include "models/robot_ball/start.h"
+#include "solver/dense.h"
 
 namespace scancal::robot_ball {
 namespace {
@@ -40,17 +40,17 @@ Result<void> CheckTurns(const Measurements& data, const std::string& where, std:
     for (size_t k = 1; k < station.views.size(); ++k)
       turns.push_back(FlangeOf(data, station.views[k]).linear() - first);
   }
-  Eigen::MatrixX3d rows(3 * std::ssize(turns), 3);
+  Eigen::MatrixXd rows(3 * std::ssize(turns), 3);
   for (size_t k = 0; k < turns.size(); ++k) rows.middleRows<3>(3 * static_cast<Eigen::Index>(k)) = turns[k];
-  const Eigen::JacobiSVD<Eigen::MatrixX3d> svd(rows, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::Vector3d turn = svd.singularValues() / std::sqrt(static_cast<double>(turns.size()));
+  const Svd svd = SvdOf(rows);
+  const Eigen::Vector3d turn = svd.values / std::sqrt(static_cast<double>(turns.size()));
   if (turn[0] < kLeastTurn_rad)
     return Error{
         fmt::format("{}: within each station the flange turns by {:.2g} deg only, which leaves the translation "
                     "of the hand-eye open; expected poses that turn about two axes, by tens of degrees",
                     where, turn[0] / kDegree)};
   if (turn[2] < kLeastTurn_rad) {
-    const Eigen::Vector3d axis = svd.matrixV().col(2);
+    const Eigen::Vector3d axis = svd.v.col(2);
     warnings->push_back(
         fmt::format("{}: within each station the flange turns about one axis only, ({:.2f}, {:.2f}, {:.2f}) of its own "
                     "frame: along it the hand-eye is not determined; add poses that turn about another",
@@ -225,7 +225,7 @@ class BallNames {
         seen.colwise() -= seen.rowwise().mean().eval();
         known.colwise() -= known.rowwise().mean().eval();
         const Eigen::Matrix3d product = seen * known.transpose();
-        const Eigen::Vector3d singular = product.jacobiSvd().singularValues();
+        const Eigen::Vector3d singular = SvdOf(product).values;
         if (singular[2] < kFlat * kFlat * singular[0]) continue;
         ++poses;
         mirrored += product.determinant() < 0;

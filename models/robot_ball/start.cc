@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include "solver/dense.h"
 
 namespace scancal::robot_ball {
 namespace {
@@ -40,8 +40,7 @@ MatrixXd ProjectOut(const MatrixXd& of, const MatrixXd& rows) {
 // A triangle T of no more rows than columns with |T x| = |rows x|.
 MatrixXd Triangle(const MatrixXd& rows) {
   if (rows.rows() <= rows.cols()) return rows;
-  const Eigen::HouseholderQR<MatrixXd> qr(rows);
-  return qr.matrixQR().topRows(rows.cols()).triangularView<Eigen::Upper>();
+  return UpperTriangle(rows);
 }
 
 MatrixXd StationRows(const Measurements& data, const Station& station) {
@@ -83,8 +82,8 @@ MatrixXd AllRows(const Measurements& data) {
 
 Matrix3d NearestRotation(Matrix3d matrix) {
   if (matrix.determinant() < 0) matrix = -matrix;  // a singular vector has no sign
-  const Eigen::JacobiSVD<Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
+  const Svd svd = SvdOf(matrix);
+  return svd.u * svd.v.transpose();
 }
 
 std::string Names(const std::vector<Station>& stations) {
@@ -103,40 +102,40 @@ Result<Matrix3d> Rotation(const std::vector<Station>& stations, const MatrixXd& 
         fmt::format("{}: the balls give {} equations for the turn of the hand-eye, expected at least 8: see "
                     "the same balls from more poses",
                     Names(stations), left.rows())};
-  const Eigen::JacobiSVD<MatrixXd> svd(left, Eigen::ComputeFullV);
+  const Svd svd = SvdOf(left);
   VectorXd sigma = VectorXd::Zero(9);
-  sigma.head(svd.singularValues().size()) = svd.singularValues();
+  sigma.head(svd.values.size()) = svd.values;
   if (sigma[7] < kSmallestMove_mm * std::sqrt(Balls(stations)) || sigma[8] > 0.5 * sigma[7])
     return Error{fmt::format(
         "{}: the poses do not determine the turn of the hand-eye: they hardly turn or move the flange, or not about "
         "two axes or in three directions, or they contradict each other",
         Names(stations))};
-  const VectorXd smallest = svd.matrixV().col(8);
+  const VectorXd smallest = svd.v.col(8);
   return NearestRotation(Eigen::Map<const Matrix3d>(smallest.data()));
 }
 
 Result<Vector3d> Translation(const std::vector<Station>& stations, const MatrixXd& rows, const Matrix3d& rotation) {
   const VectorXd known = rows.leftCols<9>() * rotation.reshaped() + rows.col(kFactor);
-  const Eigen::JacobiSVD<MatrixXd> svd(rows.middleCols<3>(kT), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Svd svd = SvdOf(rows.middleCols<3>(kT));
   const double scale = std::sqrt(Balls(stations));  // a singular value over it is about the rms turn
-  if (svd.singularValues()[0] < kSmallestTurn_rad * scale)
+  if (svd.values[0] < kSmallestTurn_rad * scale)
     return Error{fmt::format(
         "{}: the poses do not rotate the flange: the translation of the hand-eye is not determined; turn the robot "
         "about two axes",
         Names(stations))};
-  if (svd.singularValues()[2] < kSmallestTurn_rad * scale) {
-    const Vector3d axis = svd.matrixV().col(2);
+  if (svd.values[2] < kSmallestTurn_rad * scale) {
+    const Vector3d axis = svd.v.col(2);
     return Error{fmt::format(
         "{}: the poses rotate the flange about one axis only, ({:.2f}, {:.2f}, {:.2f}) of the flange: the translation "
         "of the hand-eye along it is not determined; turn the robot about a second axis",
         Names(stations), axis[0], axis[1], axis[2])};
   }
-  return Vector3d(svd.solve(-known));
+  return Vector3d(LeastSquares(rows.middleCols<3>(kT), -known));
 }
 
 bool OnALine(const MatrixXd& points) {
   const MatrixXd centred = points.colwise() - points.rowwise().mean();
-  const VectorXd sigma = Eigen::JacobiSVD<MatrixXd>(centred).singularValues();
+  const VectorXd sigma = SvdOf(centred).values;
   return sigma.size() < 2 || sigma[1] < 1e-6 * sigma[0] || sigma[0] == 0;
 }
 

@@ -1,7 +1,6 @@
 #include "models/robot_ball/tables.h"
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 #include "models/chain/declare.h"
 #include "models/median.h"
 #include "models/sphere.h"
+#include "solver/dense.h"
 
 namespace scancal::robot_ball {
 namespace {
@@ -68,10 +68,10 @@ Result<Points> ReadPoints(const std::filesystem::path& path, const Units& units)
 
 // Standard deviation across the plane that fits best.
 double Thickness(const Points& points) {
-  Eigen::MatrixX3d rows(std::ssize(points), 3);
+  Eigen::MatrixXd rows(std::ssize(points), 3);
   for (size_t i = 0; i < points.size(); ++i) rows.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
   rows.rowwise() -= rows.colwise().mean().eval();
-  return rows.jacobiSvd().singularValues()[2] / std::sqrt(static_cast<double>(points.size()));
+  return SvdOf(rows).values[2] / std::sqrt(static_cast<double>(points.size()));
 }
 
 // Why the sphere is not the ball; empty: nothing found.

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <unsupported/Eigen/NonLinearOptimization>
 #include "models/robot_ball/published.h"
+#include "solver/dense.h"
 
 namespace scancal::robot_ball {
 namespace {
@@ -84,7 +84,7 @@ struct SeenPoint {
   Eigen::Matrix3Xd by_free;  // its derivatives
 };
 
-struct Pair {
+struct PairOfPoses {
   int a = 0, b = 0;     // points
   double distance = 0;  // 0: the same ball
   int Rows() const { return distance > 0 ? 1 : 3; }
@@ -105,9 +105,9 @@ void InBase(const std::vector<Link>& links, const View& view, const T* q, T* p) 
   }
 }
 
-std::vector<Pair> PairsOfPoses(const Measurements& data, const View& one, int first_of_one, const View& other,
-                               int first_of_other) {
-  std::vector<Pair> pairs;
+std::vector<PairOfPoses> PairsOfPoses(const Measurements& data, const View& one, int first_of_one, const View& other,
+                                      int first_of_other) {
+  std::vector<PairOfPoses> pairs;
   for (int a = 0; a < std::ssize(one.balls); ++a)
     for (int b = 0; b < std::ssize(other.balls); ++b) {
       const auto &of_a = data.spheres[one.balls[a].sphere].centre, &of_b = data.spheres[other.balls[b].sphere].centre;
@@ -116,9 +116,9 @@ std::vector<Pair> PairsOfPoses(const Measurements& data, const View& one, int fi
   return pairs;
 }
 
-std::vector<Pair> PairsOf(const Measurements& data) {
+std::vector<PairOfPoses> PairsOf(const Measurements& data) {
   constexpr int kFollowing = 16;
-  std::vector<Pair> pairs;
+  std::vector<PairOfPoses> pairs;
   int first = 0;  // point of the station
   for (const Station& station : data.stations) {
     const int n = static_cast<int>(station.views.size());
@@ -158,7 +158,7 @@ class Distances {
 
   Distances(const Measurements& data, VectorXd start, Identified identified)
       : data_(data), start_(std::move(start)), free_(FreeOf(data, identified)), pairs_(PairsOf(data)) {
-    for (const Pair& pair : pairs_) rows_ += pair.Rows();
+    for (const PairOfPoses& pair : pairs_) rows_ += pair.Rows();
   }
   int inputs() const { return static_cast<int>(free_.size()); }
   int values() const { return rows_; }
@@ -172,7 +172,7 @@ class Distances {
   int operator()(const VectorXd& x, VectorXd& r) const {
     const std::vector<SeenPoint> points = Points(x, false);
     Index row = 0;
-    for (const Pair& pair : pairs_) {
+    for (const PairOfPoses& pair : pairs_) {
       const Eigen::Vector3d between = points[pair.a].p_in_base - points[pair.b].p_in_base;
       if (pair.distance > 0) r[row] = between.norm() - pair.distance;
       else r.segment<3>(row) = between;
@@ -184,7 +184,7 @@ class Distances {
   int df(const VectorXd& x, MatrixXd& J) const {
     const std::vector<SeenPoint> points = Points(x, true);
     Index row = 0;
-    for (const Pair& pair : pairs_) {
+    for (const PairOfPoses& pair : pairs_) {
       const SeenPoint &a = points[pair.a], &b = points[pair.b];
       if (pair.distance > 0)  // eq. (31)
         J.row(row) = (a.p_in_base - b.p_in_base).normalized().transpose() * (a.by_free - b.by_free);
@@ -227,7 +227,7 @@ class Distances {
   const Measurements& data_;
   VectorXd start_;
   std::vector<int> free_;
-  std::vector<Pair> pairs_;
+  std::vector<PairOfPoses> pairs_;
   int rows_ = 0;
 };
 
@@ -252,7 +252,7 @@ CentreAdjustment AdjustByDistances(const Matrix3Xd& measured, const Matrix3Xd& o
     const VectorXd l = closures + A * moved.reshaped();
     MatrixXd by_unit = A;  // A S: dX = S y, the least |y| with A S y = -l
     for (Index i = 0; i < measured.cols(); ++i) by_unit.middleCols<3>(3 * i) *= spreads[i];
-    const VectorXd y = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(by_unit).solve(-l);
+    const VectorXd y = LeastSquares(by_unit, -l);
     Matrix3Xd next = measured;
     for (Index i = 0; i < measured.cols(); ++i) next.col(i) += spreads[i] * y.segment<3>(3 * i);
     result.converged = (next - result.centres).norm() <= kStandsStill * measured.norm();
@@ -265,11 +265,11 @@ Matrix3Xd AdjustByAngles(const Matrix3Xd& measured, const Matrix3Xd& on_artifact
   constexpr double kRidge = 1e-3;
   const auto [B, d] = Angles(measured, on_artifact);
   if (B.rows() == 0) return measured;
-  const Eigen::BDCSVD<MatrixXd> svd(B, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const VectorXd& sigma = svd.singularValues();
+  const Svd svd = SvdOf(B);
+  const VectorXd& sigma = svd.values;
   const double k = std::pow(kRidge * sigma[0], 2);
   const VectorXd filter = sigma.array() / (sigma.array().square() + k);
-  const VectorXd dX = svd.matrixV() * filter.cwiseProduct(svd.matrixU().transpose() * d);
+  const VectorXd dX = svd.v.leftCols(sigma.size()) * filter.cwiseProduct(svd.u.transpose() * d);
   return measured + dX.reshaped(3, measured.cols());
 }
 

@@ -8,10 +8,10 @@
 namespace scancal::turntable {
 namespace {
 
-constexpr double kSteps[] = {1, 0.1, 0.01};  // mm: the published one, and what finer ones bring
-constexpr double kMostNodes = 1e8;           // about a minute
-constexpr double kFewPlanes = 2e6;           // fitted on a grid: as long as a refinement
-constexpr double kFewLeftOut = 2e4;          // profiles refitted with each placement left out
+constexpr double kGridSteps[] = {1, 0.1, 0.01};  // mm: the published one, and what finer ones bring
+constexpr double kMostNodes = 1e8;               // about a minute
+constexpr double kFewPlanes = 2e6;               // fitted on a grid: as long as a refinement
+constexpr double kFewLeftOut = 2e4;              // profiles refitted with each placement left out
 
 constexpr size_t kParameters = 4;
 std::vector<double> Values(const System& system) {
@@ -180,7 +180,7 @@ Result<Comparison> Scanner::Compare(const CompareChoice& choice) const {
   SCANCAL_ASSIGN_OR_RETURN(const Start start, FindStart());
   std::vector<MethodResult> results;
   for (const PlaneFit kind : {PlaneFit::kVertical, PlaneFit::kOrthogonal})
-    for (const double step : kSteps) results.push_back(GridRow(*this, start, step, kind, choice));
+    for (const double step : kGridSteps) results.push_back(GridRow(*this, start, step, kind, choice));
   using enum Model::Residuals;
   results.push_back(JointRow(*this, start, "joint, point to plane", kPlane, false, {}, choice));
   results.push_back(JointRow(*this, start, "joint, depth", kDepth, false, {}, choice));

@@ -3,8 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include "io/base64.h"
-#include "io/hash.h"
+#include "io/input_file.h"
 #include "models/turntable/compress.h"
 
 namespace scancal::turntable {
@@ -18,7 +17,7 @@ constexpr char kLayout[] =
     "number of its points, the number of its segments along z, for each segment r00 r01 r02 r11 r12 r22 of the upper "
     "triangle R (mm) for which R'R = F'F, F the rows (1, z, y) of its points; of a lidar r00 ... r22 once more, of all "
     "rows (1, z, y) times the range at the profile's line";
-constexpr size_t kMostLags = 100;
+constexpr size_t kMostLagsStored = 100;
 
 class Writer {
  public:
@@ -107,7 +106,7 @@ Profile ReadProfile(bool lidar, Reader* in) {
 
 void Read(bool lidar, size_t profiles, Reader* in, Placement* placement) {
   LagSums& sums = placement->lag_sums;
-  const size_t lags = in->Whole(0, kMostLags);
+  const size_t lags = in->Whole(0, kMostLagsStored);
   for (size_t k = 0; k < lags; ++k)
     for (auto* numbers : {&sums.products, &sums.pairs, &sums.absorbed}) numbers->push_back(in->Number());
   for (double* number : {&placement->histogram.scale, &placement->histogram.below, &placement->histogram.above})

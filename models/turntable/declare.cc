@@ -13,7 +13,7 @@ namespace {
 
 // Longer search intervals than any turntable has: metres declared for millimetres.
 constexpr double kImplausibleOffset_mm = 20'000;
-constexpr double kMostNodes = 1e9;
+constexpr double kMostNodesDeclared = 1e9;
 
 const std::map<std::string, Dimension, std::less<>> kColumns = {
     {"angle", Dimension::kAngle}, {"bearing", Dimension::kAngle}, {"y", Dimension::kLength},
@@ -112,7 +112,7 @@ GridBox ReadSearch(YamlMap top, const Units& units) {
   }
   double nodes = 1;
   for (size_t k = 0; k < 2; ++k) nodes *= std::floor((box.upper[k] - box.lower[k]) / box.step) + 1;
-  if (nodes > kMostNodes)
+  if (nodes > kMostNodesDeclared)
     search.Fail("step", fmt::format("that makes {:.3g} nodes, expected at most 1e9; use a larger step", nodes));
   return box;
 }

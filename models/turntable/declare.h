@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include "io/dataset.h"
-#include "io/scan_reader.h"
+#include "io/scan.h"
 #include "models/turntable.h"
 #include "solver/grid_search.h"
 

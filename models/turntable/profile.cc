@@ -7,6 +7,7 @@
 #include <limits>
 #include "models/line/robust_line.h"
 #include "models/turntable/compress.h"
+#include "solver/dense.h"
 
 namespace scancal::turntable {
 namespace {
@@ -72,7 +73,7 @@ Eigen::MatrixXd WithoutPureError(const Model::View& view, const Eigen::MatrixXd&
   Eigen::MatrixXd explained(std::ssize(view.points), 2);
   for (Eigen::Index i = 0; i < explained.rows(); ++i)
     explained.row(i) = view.points[i].weight * Eigen::RowVector2d(view.points[i].y, view.points[i].z);
-  return explained * Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(explained).solve(columns);
+  return explained * LeastSquares(explained, columns);
 }
 
 constexpr double kNoExtent_mm = 1e-9;
@@ -127,7 +128,7 @@ Eigen::MatrixXd AsLine(const Profile& profile, const Model::View& view, Eigen::I
   }
   for (Eigen::Index i = 0; i < rows.rows(); ++i)
     rows.row(i) = view.points[i].weight * Eigen::RowVector2d(1, view.points[i].z);
-  return WithoutPureError(view, rows * Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(line).solve(values));
+  return WithoutPureError(view, rows * LeastSquares(line, values));
 }
 
 }  // namespace

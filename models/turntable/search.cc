@@ -1,5 +1,4 @@
 #include "models/turntable/search.h"
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -12,9 +11,9 @@ namespace scancal::turntable {
 namespace {
 
 constexpr int kThreads = 2;
-constexpr int64_t kMostNodes = 61, kNodesNear = 41;  // per side
-constexpr double kFarFromGrid = 3;                   // steps
-constexpr double kLeastWidth = 0.01;                 // of a step: exact data have no U
+constexpr int64_t kMostNodesOfSurface = 61, kNodesNear = 41;  // per side
+constexpr double kStepsFromGrid = 3;                          // steps
+constexpr double kLeastWidth = 0.01;                          // of a step: exact data have no U
 
 // By inverse iteration, which keeps the small value's relative accuracy.
 double SmallestSingularValue(const Eigen::Matrix3d& r) {
@@ -42,7 +41,7 @@ NumberTable SurfaceTable(const std::vector<PlaneStorey>& storeys, const std::vec
 }
 
 std::vector<double> Thinned(const GridBox& box, size_t side) {
-  const int64_t all = box.Nodes()[side], some = std::min(all, kMostNodes);
+  const int64_t all = box.Nodes()[side], some = std::min(all, kMostNodesOfSurface);
   std::vector<double> nodes;
   for (int64_t k = 0; k < some; ++k) {
     const int64_t i = some > 1 ? k * (all - 1) / (some - 1) : 0;
@@ -62,7 +61,7 @@ double HalfWidth(const GridBox& box, const Calibration& calibration) {
     to_grid = std::max(to_grid, std::abs(calibration.grid.at[k] - parameter.value));
   }
   constexpr double kMargin = 1.05;  // the minimum is not to lie on the frame
-  return to_grid <= kFarFromGrid * box.step ? std::max(width, kMargin * to_grid) : width;
+  return to_grid <= kStepsFromGrid * box.step ? std::max(width, kMargin * to_grid) : width;
 }
 
 std::vector<double> Around(const Parameter& parameter, double half_width) {

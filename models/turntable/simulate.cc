@@ -17,7 +17,7 @@ namespace {
 constexpr double kStandoff = 75;                         // mm from the profiler's zero to the plate, straight ahead
 constexpr double kSpike = 30;                            // mm
 constexpr double kNearestWall = 30, kFarthestWall = 60;  // mm behind the plate
-constexpr int kSteps = 10, kRounds = 4;
+constexpr int kNewtonSteps = 10, kRounds = 4;
 constexpr double kSettled_mm = 1e-9;
 constexpr double kLeastHalf = 1;  // mm: of what is seen of a plate by a single profile or point
 // Placements have the streams 1, 2, ...
@@ -55,7 +55,7 @@ double ShownDepth(const System& system, const Plate& plate, double alpha, double
   const ProfileInTable<double> in_table = system.At(alpha);
   const double by_y = plate.normal.dot(in_table.Turned(in_table.along_y));
   double y = 0;
-  for (int k = 0; k < kSteps; ++k) {
+  for (int k = 0; k < kNewtonSteps; ++k) {
     const Eigen::Vector3d p = in_table.Point(y, z, k == 0 ? 0 : system.Bend(y)) - plate.centre;
     const double height = k == 0 ? 0 : plate.form.At(plate.across.dot(p), plate.up.dot(p));
     const double step = (height - plate.normal.dot(p)) / by_y;

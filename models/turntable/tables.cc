@@ -9,7 +9,7 @@
 namespace scancal::turntable {
 namespace {
 
-constexpr size_t kMostGroups = 120, kMostInSweep = 600, kMostLags = 60;
+constexpr size_t kMostGroups = 120, kMostInSweep = 600, kMostLagsDrawn = 60;
 
 struct Mean {
   double sum = 0, count = 0;
@@ -165,7 +165,7 @@ NumberTable CorrelationTable(const std::vector<Profile>& profiles, const std::ve
     for (const size_t k : angle.profiles) r.push_back(means[k].Value());
   NumberTable table = TableOf({{"lag", Unit::kOne}, {"correlation", Unit::kOne}});
   const double squares = std::inner_product(r.begin(), r.end(), r.begin(), 0.0);
-  for (size_t lag = 0; lag <= std::min(kMostLags, r.size() / 4); ++lag) {
+  for (size_t lag = 0; lag <= std::min(kMostLagsDrawn, r.size() / 4); ++lag) {
     const auto later = r.begin() + static_cast<std::ptrdiff_t>(lag);
     table.rows.push_back({static_cast<double>(lag), std::inner_product(later, r.end(), r.begin(), 0.0) / squares});
   }

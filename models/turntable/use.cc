@@ -16,7 +16,7 @@ const Quantities& AllQuantities() {
   return model.quantities();
 }
 
-constexpr int kNodes = 5;  // of the grid, along each of alpha, y, z
+constexpr int kNodesOfVolume = 5;  // of the grid, along each of alpha, y, z
 
 const std::vector<std::string>& Columns() {
   static const std::vector<std::string> columns = {"alpha", "y", "z", "X", "Y", "Z", "U_x", "U_y", "U_z", "U_max"};
@@ -25,12 +25,13 @@ const std::vector<std::string>& Columns() {
 
 std::vector<std::vector<double>> GridOver(const ScannedVolume& volume) {
   const auto node = [](const std::array<double, 2>& range, int k) {
-    return range[0] + (range[1] - range[0]) * k / (kNodes - 1);
+    return range[0] + (range[1] - range[0]) * k / (kNodesOfVolume - 1);
   };
   std::vector<std::vector<double>> nodes;
-  for (int i = 0; i < kNodes; ++i)
-    for (int j = 0; j < kNodes; ++j)
-      for (int k = 0; k < kNodes; ++k) nodes.push_back({node(volume.alpha, i), node(volume.y, j), node(volume.z, k)});
+  for (int i = 0; i < kNodesOfVolume; ++i)
+    for (int j = 0; j < kNodesOfVolume; ++j)
+      for (int k = 0; k < kNodesOfVolume; ++k)
+        nodes.push_back({node(volume.alpha, i), node(volume.y, j), node(volume.z, k)});
   return nodes;
 }
 

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 #include "io/dataset.h"
-#include "io/point_cloud.h"
-#include "io/point_list.h"
+#include "io/points.h"
 #include "io/result.h"
 #include "models/turntable/compress.h"
 #include "solver/calibration.h"

@@ -13,7 +13,7 @@ PACKAGES = {"jinja2": "python3-jinja2", "markupsafe": "python3-markupsafe", "mat
             "numpy": "python3-numpy", "fontTools": "python3-fonttools", "weasyprint": "weasyprint"}
 
 
-def arguments() -> argparse.Namespace:
+def arguments(given: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="scancal report")
     parser.add_argument("calibration", type=Path)
     parser.add_argument("--out", type=Path, help="HTML page")
@@ -21,11 +21,12 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--dcc", type=Path, help="Digital Calibration Certificate, XML")
     parser.add_argument("--previous", type=Path, help="an earlier calibration.json: as found, as left")
     parser.add_argument("--language", choices=LANGUAGES, default="en")
-    return parser.parse_args()
+    return parser.parse_args(given)
 
 
-def main() -> int:
-    choice = arguments()
+def main(given: list[str] | None = None) -> int:
+    """given: arguments in place of the command line's."""
+    choice = arguments(given)
     try:
         check_outputs([choice.out, choice.pdf, choice.dcc], [choice.calibration, choice.previous])
         calibration = read_calibration(choice.calibration)

@@ -1,5 +1,6 @@
 """The type of the report. It travels inside the page: figures are laid out with its metrics, so they need it."""
 import base64
+import functools
 import io
 from pathlib import Path
 
@@ -17,6 +18,7 @@ for _file in FONT_FILES.values():
         raise Complaint(f"{_file} is missing: install fonts-inter")
 
 
+@functools.cache
 def font_faces() -> str:
     """CSS @font-face rules with the fonts inside, cut down to the letters above."""
     from fontTools import subset, ttLib

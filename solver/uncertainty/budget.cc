@@ -1,5 +1,4 @@
 #include "solver/uncertainty/budget.h"
-#include <Eigen/QR>
 #include <algorithm>
 #include <map>
 #include <set>

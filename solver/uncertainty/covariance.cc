@@ -1,16 +1,16 @@
 #include "solver/uncertainty/covariance.h"
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include "solver/dense.h"
 
 namespace scancal {
 namespace {
 
 // (I - H)^-1/2 r of one cluster; a direction that the cluster alone determines (leverage 1) has no residual to correct.
 Eigen::VectorXd Corrected(const Eigen::MatrixXd& hat, const Eigen::VectorXd& r) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd::Identity(hat.rows(), hat.cols()) - hat);
-  const Eigen::ArrayXd left = eigen.eigenvalues().array();
+  const SymmetricEigen eigen = EigenOf(Eigen::MatrixXd::Identity(hat.rows(), hat.cols()) - hat);
+  const Eigen::ArrayXd left = eigen.values.array();
   const Eigen::ArrayXd scale = (left > 1e-8).select(left.max(1e-8).rsqrt(), 0.0);
-  return eigen.eigenvectors() * (scale * (eigen.eigenvectors().transpose() * r).array()).matrix();
+  return eigen.vectors * (scale * (eigen.vectors.transpose() * r).array()).matrix();
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // The formulas of the GUM (JCGM 100) for an uncertainty statement: law of propagation, degrees of freedom, k.
 #pragma once
 #include <Eigen/Core>
+#include <limits>
 #include <span>
 
 namespace scancal {
@@ -16,6 +17,8 @@ Eigen::MatrixXd Correlations(const Eigen::MatrixXd& covariance);  // r_ij = v_ij
 double EffectiveDof(std::span<const double> contributions, std::span<const double> dofs);
 
 inline constexpr double kCoverage = 0.95;  // probability that a stated interval or region holds the true value
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();  // dof of what is known exactly
 
 // k with P(|t| <= k) = coverage for Student's t (GUM G.3); dof may be fractional; infinite below 1.
 double CoverageFactor(double coverage, double dof);

@@ -1,15 +1,12 @@
 #include "solver/uncertainty/measurand.h"
 #include <glog/logging.h>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include "solver/dense.h"
 #include "solver/uncertainty/gum.h"
 
 namespace scancal {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Of the variance that the gradient makes of the joint covariance.
 double EffectiveDof(const JointCovariance& joint, const Eigen::RowVectorXd& gradient) {
@@ -73,12 +70,12 @@ MeasurandUncertainty UncertaintyOf(const JointCovariance& joint, const Eigen::Ma
   result.U = Eigen::VectorXd::Constant(by.rows(), kInfinity);
   result.k = result.U_max = kInfinity;
   if (!result.covariance.allFinite()) return result;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(result.covariance);  // ascending
-  result.dof = EffectiveDof(joint, directions.eigenvectors().rightCols(1).transpose() * by);
+  const SymmetricEigen directions = EigenOf(result.covariance);  // ascending
+  result.dof = EffectiveDof(joint, directions.vectors.rightCols(1).transpose() * by);
   for (const auto& component : by.rowwise()) result.dof = std::min(result.dof, EffectiveDof(joint, component));
   result.k = CoverageFactor(kCoverage, result.dof);
   result.U = result.k * result.covariance.diagonal().cwiseMax(0).cwiseSqrt();
-  result.U_max = result.k * std::sqrt(std::max(0.0, directions.eigenvalues().tail(1)[0]));
+  result.U_max = result.k * std::sqrt(std::max(0.0, directions.values.tail(1)[0]));
   return result;
 }
 

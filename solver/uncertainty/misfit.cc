@@ -1,9 +1,8 @@
 #include "solver/uncertainty/misfit.h"
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include "solver/dense.h"
 #include "solver/uncertainty/gum.h"
 #include "solver/weigh.h"
 
@@ -100,19 +99,17 @@ struct Visible {
 };
 
 Visible VisibleOf(const Columns& columns, const Eigen::VectorXd& r, const Eigen::MatrixXd& considered) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns.left);
+  const ThinQr qr = QrOf(columns.left);
   const Eigen::Index n = columns.left.cols();
-  const Eigen::MatrixXd triangle = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Svd svd = SvdOf(qr.r);
   Eigen::Index rank = 0;
-  while (rank < n && svd.singularValues()[rank] > kVisible * columns.length) ++rank;
-  const Eigen::VectorXd inverse = svd.singularValues().head(rank).cwiseInverse();
+  while (rank < n && svd.values[rank] > kVisible * columns.length) ++rank;
+  const Eigen::VectorXd inverse = svd.values.head(rank).cwiseInverse();
   const auto fitted = [&](const Eigen::MatrixXd& to) -> Eigen::MatrixXd {
-    const Eigen::MatrixXd in_basis = qr.householderQ().adjoint() * to;
-    return -(inverse.asDiagonal() * svd.matrixU().leftCols(rank).transpose() * in_basis.topRows(n));
+    return -(inverse.asDiagonal() * svd.u.leftCols(rank).transpose() * (qr.q.transpose() * to));
   };
   Visible visible;
-  visible.directions = svd.matrixV().leftCols(rank);
+  visible.directions = svd.v.leftCols(rank);
   visible.value = fitted(r);
   visible.covariance = inverse.cwiseAbs2().asDiagonal();
   if (considered.cols() > 0 && rank > 0) {

@@ -18,10 +18,10 @@ double InverseChiSquared(double dof, Random* random) {  // scaled: mean dof / (d
   return dof / boost::math::quantile(boost::math::chi_squared(dof), random->Uniform());
 }
 
-constexpr int64_t kChunk = 16;        // trials that a thread takes at a time
-constexpr int kMostSteps = 10;        // of Gauss-Newton, before Refine is asked
-constexpr double kTolerance = 1e-6;   // of a standard uncertainty
-constexpr double kLeastRatio = 1e-2;  // of two steps: two may by chance differ more than the next two
+constexpr int64_t kChunk = 16;             // trials that a thread takes at a time
+constexpr int kMostGaussNewtonSteps = 10;  // of Gauss-Newton, before Refine is asked
+constexpr double kTolerance = 1e-6;        // of a standard uncertainty
+constexpr double kLeastRatio = 1e-2;       // of two steps: two may by chance differ more than the next two
 
 // Of the estimates. Not below the rounding of a quantity's own size (of one unit, where it is smaller), as in Refine.
 Eigen::ArrayXd StandardUncertainties(const Problem& problem, const Fit& fit, const Linearization& linear) {
@@ -37,7 +37,7 @@ Fit Settle(const Problem& problem, const Estimate& from, const Eigen::ArrayXd& u
   Fit fit;
   fit.estimate = from;
   double before = 0;
-  for (; fit.iterations < kMostSteps; ++fit.iterations) {
+  for (; fit.iterations < kMostGaussNewtonSteps; ++fit.iterations) {
     const Linearization linear = Linearize(problem, fit.estimate, Storey::kViews);
     if (!std::isfinite(linear.cost)) break;
     const Estimate step = GaussNewtonStep(linear);

@@ -10,8 +10,6 @@
 namespace scancal {
 namespace {
 
-constexpr double kRankTolerance = 1e-10;  // of a column, as in Linearize
-
 bool IsRegular(const Eigen::Ref<const Eigen::MatrixXd>& triangle) {
   return (triangle.diagonal().array().abs() > kRankTolerance * triangle.colwise().norm().transpose().array()).all();
 }

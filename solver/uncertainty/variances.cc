@@ -1,9 +1,9 @@
 #include "solver/uncertainty/variances.h"
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include "solver/dense.h"
 #include "solver/linearize.h"
 #include "solver/weigh.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMostSteps = 60;
 constexpr int kFisherSteps = 5;          // sure, but slow where the model is not quite right
-constexpr double kSettled = 1e-3;        // of a standard error
+constexpr double kSettledStep = 1e-3;    // of a standard error
 constexpr double kLowest = 1e-10;        // of the variance at the start
 constexpr double kLargestStep = 25;      // a variance changes by no more than this factor, and its inverse
 constexpr double kAtZero = 1e-4;         // of a standard error: a variance below this and falling is zero
@@ -170,10 +170,10 @@ ViewEffects EffectsOn(const Block& view, const Problem& problem, const Sources& 
 // Pseudo-inverse in units of the standard errors: what the data cannot tell apart stays as it is.
 Eigen::MatrixXd Inverse(const Eigen::MatrixXd& information) {
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * information * scale.asDiagonal());
-  const Eigen::ArrayXd values = eigen.eigenvalues().array();
+  const SymmetricEigen eigen = EigenOf(scale.asDiagonal() * information * scale.asDiagonal());
+  const Eigen::ArrayXd values = eigen.values.array();
   const Eigen::ArrayXd inverse = (values > kConfounded * values.maxCoeff()).select(values.inverse(), 0.0);
-  return scale.asDiagonal() * eigen.eigenvectors() * inverse.matrix().asDiagonal() * eigen.eigenvectors().transpose() *
+  return scale.asDiagonal() * eigen.vectors * inverse.matrix().asDiagonal() * eigen.vectors.transpose() *
          scale.asDiagonal();
 }
 
@@ -237,7 +237,7 @@ class Estimation {
       const RestrictedLikelihood likelihood = Evaluate();
       result.covariance = Inverse(likelihood.information());
       result.converged = Step(likelihood, step < kFisherSteps ? likelihood.information() : likelihood.Curvature(),
-                              lowest, &result.variance) < kSettled;
+                              lowest, &result.variance) < kSettledStep;
       SetVariances(unknown_, result.variance, &problem_);
       Weigh(&problem_, at_);
     }

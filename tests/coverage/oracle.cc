@@ -1,7 +1,6 @@
 #include "tests/coverage/oracle.h"
 #include <glog/logging.h>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <memory>
 #include "models/line/noise.h"
 #include "solver/uncertainty/covariance.h"

@@ -15,8 +15,8 @@ struct Row {
   double widest = std::numeric_limits<double>::infinity();  // wanted median width against the oracle
 };
 
-// Three placements of 100 profiles of 100 points; sweep in degrees. The table of the uncertainty specification, section
-// 4, without its robot, which tests/robot_study is about.
+// Three placements of 100 profiles of 100 points; sweep in degrees. The table of
+// docs/proof.md; the robot's is made by tests/robot_study.
 std::vector<Row> Rows(double sweep_deg = 44);
 
 }  // namespace scancal::coverage

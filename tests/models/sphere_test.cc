@@ -11,8 +11,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const Eigen::Vector3d kCentre(512, -230, 1480);
-constexpr double kRadius = 6.35;
+const Eigen::Vector3d kCapCentre(512, -230, 1480);
+constexpr double kCapRadius = 6.35;
 
 // n points within half_angle of the direction -Z as seen from the centre, noise across the surface.
 std::vector<Eigen::Vector3d> Cap(int n, double half_angle, double noise, uint64_t seed = 1) {
@@ -21,8 +21,8 @@ std::vector<Eigen::Vector3d> Cap(int n, double half_angle, double noise, uint64_
   for (int i = 0; i < n; ++i) {
     const double c = 1 - random.Uniform() * (1 - std::cos(half_angle)), s = std::sqrt(1 - c * c);
     const double phi = 2 * std::numbers::pi * random.Uniform();
-    points.push_back(kCentre +
-                     (kRadius + noise * random.Normal()) * Eigen::Vector3d(s * std::cos(phi), s * std::sin(phi), -c));
+    points.push_back(kCapCentre + (kCapRadius + noise * random.Normal()) *
+                                      Eigen::Vector3d(s * std::cos(phi), s * std::sin(phi), -c));
   }
   return points;
 }
@@ -32,11 +32,11 @@ SphereChoice Known(double radius, double u = 0) { return {KnownRadius{radius, u}
 TEST(Sphere, RecoversTheTruthFromExactPoints) {
   for (const double half_angle : {0.2, 1.0, std::numbers::pi}) {
     const auto points = Cap(30, half_angle, 0);
-    for (const SphereChoice& choice : {SphereChoice{}, Known(kRadius)}) {
+    for (const SphereChoice& choice : {SphereChoice{}, Known(kCapRadius)}) {
       const SphereFit fit = FitSphere(points, choice);
       EXPECT_THAT(fit.doubt, IsEmpty());
-      EXPECT_LT((fit.centre - kCentre).norm(), 1e-9) << half_angle;
-      EXPECT_NEAR(fit.radius, kRadius, 1e-9);
+      EXPECT_LT((fit.centre - kCapCentre).norm(), 1e-9) << half_angle;
+      EXPECT_NEAR(fit.radius, kCapRadius, 1e-9);
     }
   }
 }
@@ -48,10 +48,10 @@ TEST(Sphere, StatesTheScatterOfItsCentre) {
   for (const bool free : {true, false}) {
     Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero(), stated = scatter;
     for (int trial = 0; trial < kTrials; ++trial) {
-      const SphereFit fit =
-          FitSphere(Cap(40, 1.0, kNoise, 1000 + static_cast<uint64_t>(trial)), free ? SphereChoice{} : Known(kRadius));
+      const SphereFit fit = FitSphere(Cap(40, 1.0, kNoise, 1000 + static_cast<uint64_t>(trial)),
+                                      free ? SphereChoice{} : Known(kCapRadius));
       ASSERT_THAT(fit.doubt, IsEmpty());
-      scatter += (fit.centre - kCentre) * (fit.centre - kCentre).transpose() / kTrials;
+      scatter += (fit.centre - kCapCentre) * (fit.centre - kCapCentre).transpose() / kTrials;
       stated += fit.covariance.topLeftCorner<3, 3>() / kTrials;
     }
     for (int k = 0; k < 3; ++k)
@@ -62,10 +62,10 @@ TEST(Sphere, StatesTheScatterOfItsCentre) {
 TEST(Sphere, AKnownRadiusAddsWhatItsUncertaintyMoves) {
   constexpr double kU = 1e-3;
   const auto points = Cap(40, 0.5, 1e-4);  // K b leaves out what the residuals bend: noise / radius
-  const SphereFit exact = FitSphere(points, Known(kRadius)), considered = FitSphere(points, Known(kRadius, kU));
+  const SphereFit exact = FitSphere(points, Known(kCapRadius)), considered = FitSphere(points, Known(kCapRadius, kU));
   EXPECT_EQ(considered.centre, exact.centre);
   const Eigen::Vector3d moved =
-      (FitSphere(points, Known(kRadius + kU)).centre - FitSphere(points, Known(kRadius - kU)).centre) / 2;
+      (FitSphere(points, Known(kCapRadius + kU)).centre - FitSphere(points, Known(kCapRadius - kU)).centre) / 2;
   Eigen::Vector4d by_radius;
   by_radius << moved, kU;
   const Eigen::Matrix4d expected = by_radius * by_radius.transpose();
@@ -87,20 +87,20 @@ TEST(Sphere, SeenFromOutsideItsCentreLiesBehind) {
 TEST(Sphere, ACircleDeterminesTheCentreOnlyOfAKnownRadius) {
   std::vector<Eigen::Vector3d> points;
   for (int k = 0; k < 8; ++k)
-    points.push_back(kCentre + Eigen::Vector3d(3 * std::cos(0.3 * k), 3 * std::sin(0.3 * k), -4));
+    points.push_back(kCapCentre + Eigen::Vector3d(3 * std::cos(0.3 * k), 3 * std::sin(0.3 * k), -4));
   EXPECT_THAT(FitSphere(points).doubt, HasSubstr("on a plane or a line"));
   SphereChoice choice = Known(5);
-  choice.outside = kCentre - Eigen::Vector3d(0, 0, 100);
+  choice.outside = kCapCentre - Eigen::Vector3d(0, 0, 100);
   const SphereFit fit = FitSphere(points, choice);
   EXPECT_THAT(fit.doubt, IsEmpty());
-  EXPECT_LT((fit.centre - kCentre).norm(), 1e-9);
+  EXPECT_LT((fit.centre - kCapCentre).norm(), 1e-9);
 }
 
 TEST(Sphere, TooFewPoints) {
   const auto points = Cap(4, 1, 0);
   EXPECT_THAT(FitSphere(points).doubt, HasSubstr("found 4 points, expected five or more"));
-  EXPECT_THAT(FitSphere(points, Known(kRadius)).doubt, IsEmpty());
-  EXPECT_THAT(FitSphere({}, Known(kRadius)).doubt, HasSubstr("found 0 points"));
+  EXPECT_THAT(FitSphere(points, Known(kCapRadius)).doubt, IsEmpty());
+  EXPECT_THAT(FitSphere({}, Known(kCapRadius)).doubt, HasSubstr("found 0 points"));
 }
 
 }  // namespace

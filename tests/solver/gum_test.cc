@@ -5,8 +5,6 @@
 namespace scancal {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 TEST(PropagateCovariance, CountsWhatStandsOffTheDiagonal) {
   Eigen::Matrix2d v;
   v << 4, -3, -3, 9;

@@ -9,8 +9,6 @@
 namespace scancal {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 void AddParameter(const std::string& name, Role role, double u, double dof, Calibration* c) {
   Parameter& p = c->parameters.emplace_back();
   p.name = name;

@@ -10,19 +10,19 @@
 namespace scancal {
 namespace {
 
-struct Fitted {
+struct FittedProblem {
   Problem problem;
   Fit fit;
   Linearization linear;
 };
 
-Fitted FitOf(Problem problem) {
+FittedProblem FitOf(Problem problem) {
   Fit fit = Refine(problem, NominalStart(problem));
   Linearization linear = Linearize(problem, fit.estimate, Storey::kViews);
   return {std::move(problem), std::move(fit), std::move(linear)};
 }
 
-MonteCarloSample Sample(const Fitted& f, const VarianceDof& dof, const MonteCarloOptions& options) {
+MonteCarloSample Sample(const FittedProblem& f, const VarianceDof& dof, const MonteCarloOptions& options) {
   return MonteCarlo(f.problem, f.fit, f.linear, dof, options);
 }
 
@@ -76,14 +76,14 @@ void WhitenViews(const LineScene& scene, Problem* problem) {
   }
 }
 
-Fitted WhiteFit(const LineScene& scene) {
+FittedProblem WhiteFit(const LineScene& scene) {
   Problem problem = MakeProblem<LineModel>(std::make_shared<LineModel>(WhiteModel(scene)), scene.Make());
   WhitenViews(scene, &problem);
   return FitOf(std::move(problem));
 }
 
 TEST(MonteCarlo, ScattersAsTheInverseInformationWhereEverythingIsWhitened) {
-  const Fitted f = WhiteFit(Scene());
+  const FittedProblem f = WhiteFit(Scene());
   constexpr int64_t kTrials = 5000;
   const MonteCarloSample sample = Sample(f, {}, {.trials = kTrials});
   ASSERT_EQ(sample.estimates.rows(), kTrials);
@@ -103,7 +103,7 @@ TEST(MonteCarlo, ScattersAsKVKWithWhatNoWeightHolds) {
   Problem problem = MakeProblem<LineModel>(std::make_shared<LineModel>(model), scene.Make());
   WhitenViews(scene, &problem);
   for (Target& target : problem.targets) target.views[0].mix *= 0.5;  // nor must weights be right
-  const Fitted f = FitOf(std::move(problem));
+  const FittedProblem f = FitOf(std::move(problem));
   constexpr int64_t kTrials = 5000;
   const Eigen::MatrixXd expected = BudgetOf(f.problem, f.fit.estimate, f.linear).Total();
   EXPECT_GT(expected(0, 0), 1.5 * InverseInformation(f.linear)(0, 0));
@@ -111,7 +111,7 @@ TEST(MonteCarlo, ScattersAsKVKWithWhatNoWeightHolds) {
 }
 
 TEST(MonteCarlo, GivesTheSameBitsForAnyThreadsAndBlocks) {
-  const Fitted f = WhiteFit(Scene());
+  const FittedProblem f = WhiteFit(Scene());
   const VarianceDof dof = {{"shift", 20}};
   const Eigen::MatrixXd one = Sample(f, dof, {.trials = 200, .seed = 7, .threads = 1}).estimates;
   for (const int threads : {2, 7, 300})
@@ -122,7 +122,7 @@ TEST(MonteCarlo, GivesTheSameBitsForAnyThreadsAndBlocks) {
 }
 
 TEST(MonteCarlo, TellsHowFarItIs) {
-  const Fitted f = WhiteFit(Scene());
+  const FittedProblem f = WhiteFit(Scene());
   double last = -1;
   const auto thread = std::this_thread::get_id();
   Sample(f, {}, {.trials = 500, .threads = 2, .progress = [&](double done) {
@@ -135,7 +135,7 @@ TEST(MonteCarlo, TellsHowFarItIs) {
 }
 
 // Lines whose only uncertainty is the noise of their points.
-Fitted NoisyLines() {
+FittedProblem NoisyLines() {
   LineModel model;
   model.quantity(LineModel::kNoise).role = Role::kConsider;
   model.quantity(LineModel::kNoise).u = 0.1;
@@ -143,7 +143,7 @@ Fitted NoisyLines() {
 }
 
 TEST(MonteCarlo, DrawsEstimatedVariancesFromTheirScaledInverseChiSquared) {
-  const Fitted f = NoisyLines();
+  const FittedProblem f = NoisyLines();
   constexpr int kTrials = 10'000;
   const double u = std::sqrt(BudgetOf(f.problem, f.fit.estimate, f.linear).Total()(0, 0));
   // The slope is then u times a Student t, whose variance is dof / (dof - 2) and whose kurtosis 3 + 6 / (dof - 4).
@@ -156,7 +156,7 @@ TEST(MonteCarlo, DrawsEstimatedVariancesFromTheirScaledInverseChiSquared) {
 }
 
 TEST(MonteCarlo, TakesEightDegreesOfFreedomForFewer) {
-  const Fitted f = NoisyLines();
+  const FittedProblem f = NoisyLines();
   const Eigen::MatrixXd eight = Sample(f, {{"noise", 8}}, {.trials = 50}).estimates;
   EXPECT_EQ(Sample(f, {{"noise", 1.5}}, {.trials = 50}).estimates, eight);
   EXPECT_NE(Sample(f, {{"noise", 9}}, {.trials = 50}).estimates, eight);
@@ -190,7 +190,7 @@ class GainModel {
   Quantities quantities_;
 };
 
-Fitted GainFit(double u) {
+FittedProblem GainFit(double u) {
   return FitOf(MakeProblem<GainModel>(std::make_shared<GainModel>(u), {{"line", {{{1, 2, 3}}}}}));
 }
 

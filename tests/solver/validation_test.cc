@@ -8,8 +8,7 @@
 namespace scancal {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double k95 = 1.959963984540054;
+constexpr double kNormal95 = 1.959963984540054;
 
 // y + u x, x from `draw`.
 template <class Draw>
@@ -60,23 +59,23 @@ TEST(Validate, TakesTheOrderStatisticsOfTheGuide) {  // 7.7.2
 TEST(Validate, PassesAnExactlyRightGaussianAtOneDigit) {
   // u = 1.2: delta is 0.42 u, two standard errors of an end are 0.053 u.
   for (uint64_t seed = 1; seed <= 20; ++seed)
-    EXPECT_EQ(Validate(NormalTrials(10'000, 5, 1.2, seed), {5, 1.2, k95 * 1.2}, 1).verdict, Verdict::kPass);
+    EXPECT_EQ(Validate(NormalTrials(10'000, 5, 1.2, seed), {5, 1.2, kNormal95 * 1.2}, 1).verdict, Verdict::kPass);
 }
 
 TEST(Validate, DoesNotDecideWhatTenThousandTrialsCannot) {
   // At two digits delta is 0.042 u: less than two standard errors.
   for (uint64_t seed = 1; seed <= 20; ++seed)
-    EXPECT_EQ(Validate(NormalTrials(10'000, 5, 1.2, seed), {5, 1.2, k95 * 1.2}, 2).verdict, Verdict::kUndecided);
+    EXPECT_EQ(Validate(NormalTrials(10'000, 5, 1.2, seed), {5, 1.2, kNormal95 * 1.2}, 2).verdict, Verdict::kUndecided);
   EXPECT_EQ(Validate(NormalTrials(10'000, 5, 1.2), {5, 0, 0}, 1).verdict, Verdict::kUndecided);
-  EXPECT_EQ(Validate(NormalTrials(100, 5, 1.2), {5, 1.2, k95 * 1.2}, 1).verdict, Verdict::kUndecided);
+  EXPECT_EQ(Validate(NormalTrials(100, 5, 1.2), {5, 1.2, kNormal95 * 1.2}, 1).verdict, Verdict::kUndecided);
 }
 
 TEST(Validate, FailsAWrongIntervalAtEitherEnd) {
   const std::vector<double> trials = NormalTrials(10'000, 5, 1.2);
-  EXPECT_EQ(Validate(trials, {5, 1.2, k95 * 1.2 * 1.35}, 1).verdict, Verdict::kFail);
-  EXPECT_EQ(Validate(trials, {5, 1.2, k95 * 1.2 / 1.35}, 1).verdict, Verdict::kFail);
-  EXPECT_EQ(Validate(trials, {5.7, 1.2, k95 * 1.2}, 1).verdict, Verdict::kFail);
-  EXPECT_EQ(Validate(trials, {4.3, 1.2, k95 * 1.2}, 1).verdict, Verdict::kFail);
+  EXPECT_EQ(Validate(trials, {5, 1.2, kNormal95 * 1.2 * 1.35}, 1).verdict, Verdict::kFail);
+  EXPECT_EQ(Validate(trials, {5, 1.2, kNormal95 * 1.2 / 1.35}, 1).verdict, Verdict::kFail);
+  EXPECT_EQ(Validate(trials, {5.7, 1.2, kNormal95 * 1.2}, 1).verdict, Verdict::kFail);
+  EXPECT_EQ(Validate(trials, {4.3, 1.2, kNormal95 * 1.2}, 1).verdict, Verdict::kFail);
   EXPECT_EQ(Validate(trials, {5, 1.2, kInfinity}, 1).verdict, Verdict::kFail);
 }
 
@@ -90,7 +89,7 @@ TEST(Validate, KnowsStudentT) {
 TEST(Validate, FailsASkewedDistribution) {  // exponential: the interval is [0.025, 3.69], not 1 +- 1.96
   const std::vector<double> trials =
       Trials(10'000, 0, 1, 1, [](Random* random) { return -std::log(random->Uniform()); });
-  const Validation result = Validate(trials, {1, 1, k95}, 1);
+  const Validation result = Validate(trials, {1, 1, kNormal95}, 1);
   EXPECT_EQ(result.verdict, Verdict::kFail);
   EXPECT_NEAR(result.low, -std::log(0.975), 4 * 0.0016);  // standard errors sqrt(0.025 0.975 / 10^4) / density
   EXPECT_NEAR(result.high, -std::log(0.025), 4 * 0.063);
@@ -99,7 +98,7 @@ TEST(Validate, FailsASkewedDistribution) {  // exponential: the interval is [0.0
 
 // Two quantities: u = 1 with an interval that is right, and the same times `factor`.
 AdaptiveSample Adaptive(double factor, int64_t most, std::vector<GumInterval>* gum) {
-  *gum = {{3, 1, k95}, {0, 1, k95 * factor}};
+  *gum = {{3, 1, kNormal95}, {0, 1, kNormal95 * factor}};
   const auto sample = [](int64_t first, int64_t trials) {
     Eigen::MatrixXd block(trials, 2);
     Random random(1, static_cast<uint64_t>(first));

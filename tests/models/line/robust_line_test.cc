@@ -7,14 +7,14 @@
 namespace scancal {
 namespace {
 
-struct Points {
+struct Profile {
   std::vector<double> y, z;
 };
 
 // y = 10 + 0.2 z; the first `share` of the line lies `behind` it.
-Points Line(int n, double share, double behind, uint64_t seed) {
+Profile WithBackground(int n, double share, double behind, uint64_t seed) {
   Random random(seed, 0);
-  Points points;
+  Profile points;
   for (int i = 0; i < n; ++i) {
     points.z.push_back(200.0 * i / n - 100);
     points.y.push_back(10 + 0.2 * points.z.back() + 0.05 * random.Normal() + (i < share * n ? behind : 0));
@@ -31,7 +31,7 @@ double WorstDistance(const RobustLine& line) {
 TEST(RobustLine, FindsTheLineUnderBackground) {
   for (const double share : {0.0, 0.1, 0.3, 0.4}) {
     for (uint64_t seed = 1; seed <= 20; ++seed) {
-      const Points points = Line(200, share, 40, seed);
+      const Profile points = WithBackground(200, share, 40, seed);
       const RobustLine line = FitRobustLine(points.y, points.z);
       EXPECT_LT(WorstDistance(line), 0.05) << share << " " << seed;
       EXPECT_TRUE(share > 0.2 || std::abs(line.scale / (0.05 * std::cos(std::atan(0.2))) - 1) < 0.35) << line.scale;
@@ -40,7 +40,7 @@ TEST(RobustLine, FindsTheLineUnderBackground) {
 }
 
 TEST(RobustLine, DoesNotDependOnTheOrderOfPoints) {
-  Points points = Line(101, 0.3, 40, 1);
+  Profile points = WithBackground(101, 0.3, 40, 1);
   const RobustLine forward = FitRobustLine(points.y, points.z);
   std::reverse(points.y.begin(), points.y.end());
   std::reverse(points.z.begin(), points.z.end());
@@ -50,7 +50,7 @@ TEST(RobustLine, DoesNotDependOnTheOrderOfPoints) {
 }
 
 TEST(RobustLine, RunsAlongDepthToo) {  // a lidar's fan may see a wall edge-on to its y axis
-  const Points points = Line(100, 0, 0, 2);
+  const Profile points = WithBackground(100, 0, 0, 2);
   const RobustLine line = FitRobustLine(points.z, points.y);
   EXPECT_NEAR(std::abs(line.dy), 1 / std::sqrt(1.04), 1e-3);
 }

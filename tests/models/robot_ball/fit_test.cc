@@ -6,14 +6,14 @@
 namespace scancal::robot_ball {
 namespace {
 
-Measurements Noiseless() {
+Measurements ExactMeasurements() {
   Scene scene;
   scene.repeatability = scene.ball_noise = scene.u_spheres = 0;
   return Simulate(scene).data;
 }
 
 TEST(FitJointly, StartsFromTheLinksOfTheModel) {
-  const Measurements data = Noiseless();
+  const Measurements data = ExactMeasurements();
   Model model(data.links, data.spheres);
   constexpr int kLast = Model::kLinks + 5 * kLinkNumbers, kD = 1, kA = 2;
   model.quantity(kLast + kD).value = 20;             // held
@@ -34,7 +34,7 @@ TEST(FitJointly, StartsFromTheLinksOfTheModel) {
 }
 
 TEST(FitJointly, PosesOfTheFlangeHaveNoLinkErrors) {
-  Measurements data = Noiseless();
+  Measurements data = ExactMeasurements();
   for (Station& station : data.stations)
     for (Model::View& view : station.views) {
       view.base_from_flange = BaseFromFlange(data.links, view.joints);

@@ -26,19 +26,19 @@ std::vector<std::string> Doubts(const Measurements& data, const std::vector<doub
   return calibration.unreliable;
 }
 
-Measurements Simulated(uint64_t seed) {
+Measurements FromSeed(uint64_t seed) {
   Scene scene;
   scene.seed = scene.noise_seed = seed;
   return Simulate(scene).data;
 }
 
 TEST(RobotVerdicts, RightDataRaiseNone) {
-  for (uint64_t seed = 1; seed <= 8; ++seed) EXPECT_THAT(Doubts(Simulated(seed), std::vector(10, 1.0)), IsEmpty());
+  for (uint64_t seed = 1; seed <= 8; ++seed) EXPECT_THAT(Doubts(FromSeed(seed), std::vector(10, 1.0)), IsEmpty());
 }
 
 TEST(RobotVerdicts, AWrongJointAngleIsFoundByItsPose) {
   for (const double degrees : {1.0, 10.0}) {
-    Measurements data = Simulated(1);
+    Measurements data = FromSeed(1);
     Model::View& pose = data.stations[3].views[2];
     pose.joints[2] += degrees * kDegree;
     EXPECT_THAT(
@@ -48,7 +48,7 @@ TEST(RobotVerdicts, AWrongJointAngleIsFoundByItsPose) {
 }
 
 TEST(RobotVerdicts, LengthsThatBecomeWorseOrHaveAnotherUnitAreTold) {
-  Measurements data = Simulated(1);
+  Measurements data = FromSeed(1);
   EXPECT_THAT(Doubts(data, std::vector(10, 0.001)), ElementsAre(HasSubstr("more than with the nominal robot")));
   data.check[2].distance /= 1000;
   EXPECT_THAT(Doubts(data, std::vector(10, 1.0)),

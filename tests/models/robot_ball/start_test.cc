@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include "models/robot_ball/published.h"
 #include "models/robot_ball/simulate.h"
+#include "tests/models/robot_ball/without_links.h"
 
 namespace scancal::robot_ball {
 namespace {
@@ -25,17 +26,6 @@ void ExpectTruth(const Measurements& data, double mm, double rad) {
 std::string Complaint(const Measurements& data) {
   const Result<Kinematics> setup = InitialHandEye(data);
   return setup.ok() ? "" : setup.error().message;
-}
-
-// The flange at joints, without links: the controller's poses.
-Measurements WithoutLinks(Measurements data) {
-  for (Station& station : data.stations)
-    for (Model::View& view : station.views) {
-      view.base_from_flange = BaseFromFlange(data.links, view.joints);
-      view.joints.clear();
-    }
-  data.links.clear();
-  return data;
 }
 
 // One station seen from these poses of the flange, as a controller gives them.

@@ -5,24 +5,13 @@
 #include "models/robot_ball/scanner.h"
 #include "models/robot_ball/simulate.h"
 #include "models/robot_ball/start.h"
+#include "tests/models/robot_ball/without_links.h"
 #include "tests/robot_study/declared.h"
 
 namespace scancal::robot_ball {
 namespace {
 
 using ::testing::ElementsAre;
-
-// Poses of the flange that the controller gives, in place of links.
-Measurements WithoutLinks(Measurements data) {
-  for (Station& station : data.stations)
-    for (Model::View& view : station.views) {
-      view.base_from_flange = BaseFromFlange(data.links, view.joints);
-      view.joints.clear();
-    }
-  data.links.clear();
-  data.check.clear();
-  return data;
-}
 
 Scene SmallScene() {
   Scene scene;

@@ -6,7 +6,7 @@
 #include "models/turntable/scanner.h"
 #include "solver/random.h"
 
-namespace scancal::turntable_figures {
+namespace scancal::turntable::bent_plates {
 
 inline constexpr int kPoints = 40;  // five in every segment
 
@@ -14,15 +14,15 @@ struct Point {
   double alpha = 0, y = 0, z = 0;
 };
 
-struct Scene {
+struct ScannedPlates {
   std::vector<std::vector<Point>> points;  // per placement
   std::vector<Placement> placements;
 };
 
 // Three bent plates before a profiler, or a lidar that stands farther back.
-inline Scene Scanned(int profiles, bool lidar = false) {
+inline ScannedPlates Scanned(int profiles, bool lidar = false) {
   const System truth{{123, lidar ? 50.0 : 409.0}, {}};
-  Scene scene;
+  ScannedPlates scene;
   Random random(1, 0);
   for (const auto& [turn, lean] : {std::pair{-25 * kDegree, 12 * kDegree}, {0, -8 * kDegree}, {25 * kDegree, 0.2}}) {
     const Eigen::Vector3d normal(std::sin(turn) * std::cos(lean), -std::cos(turn) * std::cos(lean), std::sin(lean));
@@ -69,4 +69,4 @@ inline double ResidualOf(const Point& p, const Calibration& c, size_t target, bo
          normal.dot((measured - from).normalized());
 }
 
-}  // namespace scancal::turntable_figures
+}  // namespace scancal::turntable::bent_plates

@@ -25,7 +25,7 @@ class DeclarationTest : public ::testing::Test {
     folder_.Write("dataset.yaml", yaml);
     SCANCAL_ASSIGN_OR_RETURN(const Dataset dataset, ReadDataset(folder_.path()));
     model_ = Model(Model::Residuals::kDepth);
-    return Declare(dataset, &model_);
+    return turntable::Declare(dataset, &model_);
   }
   // A sound data set, with these lines in addition.
   Result<Declaration> DeclareWith(const std::string& lines) {

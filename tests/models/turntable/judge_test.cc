@@ -26,7 +26,7 @@ struct PlateAt {
 };
 
 // White noise of 0.01 mm along depth.
-Placement Seen(const PlateAt& plate, double sweep, uint64_t seed) {
+Placement Shown(const PlateAt& plate, double sweep, uint64_t seed) {
   Random random(seed, 0);
   Placement placement;
   placement.name = "plate " + std::to_string(seed);
@@ -73,7 +73,7 @@ Scanner ScannerOf(std::vector<Placement> placements, const GridBox& box = {{110,
 
 std::vector<Placement> See(const std::vector<PlateAt>& plates, double sweep = 30) {
   std::vector<Placement> placements;
-  for (const PlateAt& plate : plates) placements.push_back(Seen(plate, sweep, placements.size() + 1));
+  for (const PlateAt& plate : plates) placements.push_back(Shown(plate, sweep, placements.size() + 1));
   return placements;
 }
 

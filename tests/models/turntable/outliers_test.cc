@@ -10,7 +10,7 @@ namespace {
 constexpr int kSeeds = 20;
 
 // Of M and N over the seeds: mean u, mean error, and the mean square of error / u.
-struct Study {
+struct Share {
   double u[2] = {0, 0}, bias[2] = {0, 0}, scatter[2] = {0, 0}, set_aside = 0;
   double StandardError(int k) const { return std::sqrt(scatter[k] / kSeeds); }
 };
@@ -30,8 +30,8 @@ class OutliersTest : public ::testing::Test {
     return *calibration;
   }
 
-  Study Repeat(double outliers, double background) {
-    Study study;
+  Share Repeat(double outliers, double background) {
+    Share study;
     for (int seed = 1; seed <= kSeeds; ++seed) {
       Scene scene;
       scene.profiles = 20;
@@ -57,7 +57,7 @@ class OutliersTest : public ::testing::Test {
 };
 
 TEST_F(OutliersTest, TwoPercentSpikesCostLessThanFivePercentOfU) {
-  const Study clean = Repeat(0, 0), spiked = Repeat(0.02, 0);
+  const Share clean = Repeat(0, 0), spiked = Repeat(0.02, 0);
   EXPECT_LT(clean.set_aside, 1);
   EXPECT_NEAR(spiked.set_aside, 72, 4 * std::sqrt(72.0 / kSeeds));
   for (int k = 0; k < 2; ++k) {
@@ -68,7 +68,7 @@ TEST_F(OutliersTest, TwoPercentSpikesCostLessThanFivePercentOfU) {
 }
 
 TEST_F(OutliersTest, ThirtyPercentBackgroundLeavesNoBias) {  // what it moves: see tests/cli/background_test.cc
-  const Study study = Repeat(0, 0.3);
+  const Share study = Repeat(0, 0.3);
   EXPECT_NEAR(study.set_aside, 0.3 * 3600, 5);
   for (int k = 0; k < 2; ++k) {
     EXPECT_LT(std::abs(study.bias[k]), 3 * study.StandardError(k));

@@ -9,7 +9,7 @@
 namespace scancal::turntable {
 namespace {
 
-using namespace turntable_figures;
+using namespace bent_plates;
 using ::testing::ElementsAre;
 using ::testing::Ge;
 
@@ -68,7 +68,7 @@ TEST(TurntableFigures, WhatIsHeldHasOneNode) {
 }
 
 TEST(TurntableFigures, TheSceneStandsInTheTableFrame) {
-  const Scene scene = Scanned(40);
+  const ScannedPlates scene = Scanned(40);
   const Calibration c = Calibrated(ScannerOf(scene.placements));
   const double radius = std::hypot(c.Find("M")->value, c.Find("N")->value);
   for (const TargetSummary& target : c.targets) {

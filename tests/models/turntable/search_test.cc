@@ -11,7 +11,7 @@ namespace {
 
 using zhao_2021::Measurement;
 
-Scene SmallScene() {
+Scene CoarseScene() {
   Scene scene;
   scene.profiles = 15;
   scene.points = 8;
@@ -62,7 +62,7 @@ TEST(Zhao2021, FitsAPlaneByLeastSquaresInZ) {
 }
 
 TEST(Zhao2021, TheCompressedSearchGivesThePublishedSAtEveryNode) {
-  const auto placements = Simulate(SmallScene());
+  const auto placements = Simulate(CoarseScene());
   const auto points = Measurements(placements);
   const auto storeys = Storeys(placements);
   for (double M = 110; M <= 130; M += 2.5)
@@ -74,7 +74,7 @@ TEST(Zhao2021, TheCompressedSearchGivesThePublishedSAtEveryNode) {
 }
 
 TEST(Zhao2021, TheCompressedSearchFindsThePublishedMinimum) {
-  const auto placements = Simulate(SmallScene());
+  const auto placements = Simulate(CoarseScene());
   const GridBox box{{110, 395}, {130, 425}, 1};
   const GridResult published = zhao_2021::Search(box, Measurements(placements));
   const auto storeys = Storeys(placements);
@@ -87,7 +87,7 @@ TEST(Zhao2021, TheCompressedSearchFindsThePublishedMinimum) {
 }
 
 TEST(PlaneStorey, OrthogonalRmseIsTheSmallestSingularValue) {
-  const auto placements = Simulate(SmallScene());
+  const auto placements = Simulate(CoarseScene());
   const auto points = Measurements(placements)[0];
   const PlaneStorey storey = Storeys(placements)[0];
   for (const auto& [M, N] : {std::pair{123.0, 409.0}, {100.0, 450.0}, {-50.0, 0.0}}) {
@@ -122,7 +122,7 @@ TEST(PlaneStorey, ThePublishedFitFailsOnAPlateParallelToTheAxis) {
 }
 
 TEST(PlaneStorey, KnowsTheTilts) {
-  Scene scene = SmallScene();
+  Scene scene = CoarseScene();
   scene.system[Model::kTiltX] = 0.02;
   scene.system[Model::kTiltY] = -0.03;
   scene.noise_y = 0;

@@ -81,7 +81,7 @@ TEST(PlateForm, StretchesToAnotherRectangle) {
   }
 }
 
-Scene SmallScene() {
+Scene ExactScene() {
   Scene scene;
   scene.profiles = 21;
   scene.points = 30;
@@ -109,7 +109,7 @@ double Product(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 TEST(Simulate, FormIsWhatThePointsShow) {
-  Scene scene = SmallScene();
+  Scene scene = ExactScene();
   scene.form = 0.01;
   constexpr int kScenes = 100;
   double sum = 0, squares = 0, between = 0;
@@ -127,7 +127,7 @@ TEST(Simulate, FormIsWhatThePointsShow) {
 }
 
 TEST(Simulate, OnePlateHasOneForm) {
-  Scene scene = SmallScene();
+  Scene scene = ExactScene();
   scene.form = 0.01;
   scene.one_plate = true;
   for (const FormKind kind : {FormKind::kModes, FormKind::kSmooth, FormKind::kBent}) {
@@ -140,7 +140,7 @@ TEST(Simulate, OnePlateHasOneForm) {
 }
 
 TEST(Simulate, FormDoesNotShiftTheNoise) {
-  Scene scene = SmallScene();
+  Scene scene = ExactScene();
   const auto flat = Simulate(scene);
   scene.form = 0.01;
   const auto bent = Simulate(scene);
@@ -155,7 +155,7 @@ TEST(Simulate, FormDoesNotShiftTheNoise) {
 }
 
 TEST(Simulate, BackgroundIsOneRunAtEitherEnd) {
-  Scene scene = SmallScene();
+  Scene scene = ExactScene();
   scene.noise_y = 0.05;
   const auto clean = Simulate(scene);
   scene.background = 0.3;
@@ -188,7 +188,7 @@ TEST(Simulate, BackgroundIsOneRunAtEitherEnd) {
 }
 
 TEST(Simulate, OneProfileOfOnePointMayHaveForm) {
-  Scene scene = SmallScene();
+  Scene scene = ExactScene();
   scene.profiles = scene.points = 1;
   scene.form = 0.01;
   for (const FormKind kind : {FormKind::kModes, FormKind::kSmooth, FormKind::kBent}) {

@@ -9,7 +9,7 @@
 namespace scancal::turntable {
 namespace {
 
-using namespace turntable_figures;
+using namespace bent_plates;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -17,7 +17,7 @@ struct Direct {
   double sum = 0, count = 0;
 };
 
-Direct MeanWithin(const Scene& scene, const Calibration& c, size_t target, const std::vector<double>& cell,
+Direct MeanWithin(const ScannedPlates& scene, const Calibration& c, size_t target, const std::vector<double>& cell,
                   bool lidar = false) {
   Direct direct;
   for (const Point& p : scene.points[target]) {
@@ -30,7 +30,7 @@ Direct MeanWithin(const Scene& scene, const Calibration& c, size_t target, const
 
 TEST(TurntableFigures, CellsAreMeansOfTheirPoints) {
   for (const int profiles : {40, 250}) {
-    const Scene scene = Scanned(profiles);
+    const ScannedPlates scene = Scanned(profiles);
     const Calibration c = Calibrated(ScannerOf(scene.placements));
     for (size_t t = 0; t < c.targets.size(); ++t) {
       const NumberTable& cells = c.targets[t].residual_tables.at("cells");
@@ -66,7 +66,7 @@ TEST(TurntableFigures, CellsLieBesideEachOther) {
 }
 
 TEST(TurntableFigures, AGapInTheSweepStaysOne) {
-  Scene scene = Scanned(60);
+  ScannedPlates scene = Scanned(60);
   for (Placement& placement : scene.placements)
     placement.profiles.erase(placement.profiles.begin() + 20, placement.profiles.begin() + 40);
   const Calibration c = Calibrated(ScannerOf(scene.placements));
@@ -77,7 +77,7 @@ TEST(TurntableFigures, AGapInTheSweepStaysOne) {
 }
 
 TEST(TurntableFigures, ABentPlateShowsInItsCells) {
-  const Scene scene = Scanned(40);
+  const ScannedPlates scene = Scanned(40);
   const Calibration c = Calibrated(ScannerOf(scene.placements));
   double middle = 0, ends = 0, bend = 0;
   for (const std::vector<double>& cell : c.targets[1].residual_tables.at("cells").rows)
@@ -87,7 +87,7 @@ TEST(TurntableFigures, ABentPlateShowsInItsCells) {
 }
 
 TEST(TurntableFigures, CellsOfALidarAreAlongTheRange) {
-  const Scene scene = Scanned(40, true);
+  const ScannedPlates scene = Scanned(40, true);
   const Calibration c = Calibrated(ScannerOf(scene.placements, {{110, 30}, {130, 60}, 1}));
   double worst = 0;
   for (const std::vector<double>& cell : c.targets[2].residual_tables.at("cells").rows) {
@@ -102,7 +102,7 @@ TEST(TurntableFigures, CellsOfALidarAreAlongTheRange) {
 }
 
 TEST(TurntableFigures, TheSweepIsTheMeanOfEachProfile) {
-  const Scene scene = Scanned(40);
+  const ScannedPlates scene = Scanned(40);
   const Calibration c = Calibrated(ScannerOf(scene.placements), {.residual = "plane"});  // depth, whatever was fitted
   const NumberTable& sweep = c.targets[1].residual_tables.at("sweep");
   EXPECT_THAT(sweep.columns, ElementsAre("alpha", "residual", "u"));
@@ -149,7 +149,7 @@ void ExpectClose(const NumberTables& a, const NumberTables& b) {
 }
 
 TEST(TurntableFigures, TheOrderOfProfilesAndTargetsDoesNotMatter) {
-  Scene scene = Scanned(130);
+  ScannedPlates scene = Scanned(130);
   const Calibration a = Calibrated(ScannerOf(scene.placements));
   for (Placement& placement : scene.placements)
     for (size_t i = 0; i < 130; ++i) std::swap(placement.profiles[i], placement.profiles[(i * 37) % 130]);

@@ -18,7 +18,7 @@ struct Reading {
 };
 constexpr Reading kHere = {-12 * kDegree, 40, -70}, kThere = {15 * kDegree, 200, 80};
 
-Eigen::Vector3d PointOf(const Reading& reading, const ScannedVolume& volume, const std::vector<double>& q) {
+Eigen::Vector3d Located(const Reading& reading, const ScannedVolume& volume, const std::vector<double>& q) {
   System system{{}, volume.y};
   std::copy_n(q.begin(), system.q.size(), system.q.begin());
   return system.Point(reading.alpha, reading.y, reading.z);
@@ -54,7 +54,7 @@ TEST(PointUncertainty, EqualsItsMonteCarlo) {
     std::vector<double> q = nominal;
     for (size_t k = 0; k < joint.names.size(); ++k)
       q[Find(quantities, joint.names[k])] += errors[static_cast<Eigen::Index>(k)];
-    const Eigen::Vector3d a = PointOf(kHere, points.volume(), q), b = PointOf(kThere, points.volume(), q);
+    const Eigen::Vector3d a = Located(kHere, points.volume(), q), b = Located(kThere, points.volume(), q);
     scatter += (a - here.position) * (a - here.position).transpose() / kTrials;
     of_distance += std::pow((b - a).norm() - distance, 2) / kTrials;
   }
@@ -91,7 +91,7 @@ TEST(PointUncertainty, EqualsTheScatterOfRepeatedCalibrations) {
     truth[Model::kExpansion] = 1e-4 * random.Normal();  // another day
     const PointUncertainty points = PointsOf(calibration);
     const PropagatedPoint here = At(points, kHere), there = At(points, kThere);
-    const Eigen::Vector3d a = PointOf(kHere, points.volume(), truth), b = PointOf(kThere, points.volume(), truth),
+    const Eigen::Vector3d a = Located(kHere, points.volume(), truth), b = Located(kThere, points.volume(), truth),
                           error = there.position - b;
     scatter += error.array().square() / kTrials;
     stated += there.uncertainty.covariance.diagonal().array() / kTrials;
@@ -117,7 +117,7 @@ TEST(PointUncertainty, ATrueScaleErrorMovesAPointByWhatUSays) {
   const PropagatedPoint found = At(PointsOf(wrong), kHere);
   q[Model::kM] = scene.system.M();
   q[Model::kN] = scene.system.N();
-  const Eigen::Vector3d error = found.position - PointOf(kHere, {}, q);
+  const Eigen::Vector3d error = found.position - Located(kHere, PointsOf(wrong).volume(), q);
   for (int i = 0; i < 2; ++i) {
     EXPECT_NEAR(std::abs(error[i]), kScale * std::abs(found.position[i]), 2 * kScale * kScale * 500);
     EXPECT_NEAR(std::sqrt(found.uncertainty.covariance(i, i)), std::abs(error[i]), 2 * kScale * kScale * 500);

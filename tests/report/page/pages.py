@@ -5,7 +5,9 @@ that variable every test makes those that it needs, and keeps none.
 """
 import concurrent.futures
 import functools
+import importlib.util
 import json
+import multiprocessing
 import os
 import shutil
 import subprocess
@@ -63,10 +65,8 @@ def calibration(scene: str) -> Path:
 def page(scene: str, language: str = "en") -> Path:
     """Of PRINTED the English one also as a PDF beside it."""
     file = _shared / f"{scene}_{language}.html"
-    if file.exists():
-        return file
-    pdf_too = [f"--pdf={file.with_suffix('.pdf')}"] if language == "en" and scene in PRINTED else []
-    report(calibration(scene), f"--out={file}", f"--language={language}", *pdf_too, PYTHONHASHSEED="1", TZ="UTC")
+    if not file.exists():
+        report(*_arguments(scene, language), PYTHONHASHSEED="1", TZ="UTC")
     return file
 
 
@@ -160,8 +160,28 @@ def make_all() -> None:
     wanted = [(scene, language) for scene in SCENES for language in LANGUAGES.get(scene, ["en", "de"])]
     for scene in SCENES:  # one is made of another
         calibration(scene)
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(lambda each: page(*each), wanted))
+    import fonts  # those of the report: what all pages share is loaded once, and every page is made by a fork
+    import page as _
+    import pdf as _
+    fonts.font_faces()
+    os.environ["TZ"] = "UTC"
+    with concurrent.futures.ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context("fork")) as pool:
+        for code in pool.map(_made_by_fork, *zip(*wanted)):
+            if code:
+                sys.exit(code)
+
+
+def _made_by_fork(scene: str, language: str) -> int:
+    spec = importlib.util.spec_from_file_location("report_page", SOURCE / "report/page/__main__.py")
+    program = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(program)
+    return program.main(_arguments(scene, language))
+
+
+def _arguments(scene: str, language: str) -> list[str]:
+    file = _shared / f"{scene}_{language}.html"
+    pdf_too = [f"--pdf={file.with_suffix('.pdf')}"] if language == "en" and scene in PRINTED else []
+    return [str(calibration(scene)), f"--out={file}", f"--language={language}", *pdf_too]
 
 
 if __name__ == "__main__":
