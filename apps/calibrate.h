@@ -1,7 +1,9 @@
 // What the commands that calibrate share.
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
+#include "models/models.h"
 #include "models/scanner.h"
 
 namespace scancal {
@@ -11,5 +13,12 @@ int CalibrateAndReport(const std::vector<std::string>& arguments, const RefineCh
 
 // That a flag of this name asks for a sensible number of trials.
 Result<void> CheckTrials(const std::string& flag, int trials);
+
+// Takes the one argument DATASET, reads and compresses it, and echoes what was declared. A calibration.json in its
+// place holds the compressed data.
+Result<std::unique_ptr<Scanner>> LoadAndEcho(const std::vector<std::string>& arguments);
+// What was read with its hashes; behind a calibration.json what it was made from, as it says.
+Result<std::vector<HashedFile>> InputsOf(const Scanner& scanner);
+Result<Dataset> ReadOnlyArgument(const std::vector<std::string>& arguments);
 
 }  // namespace scancal

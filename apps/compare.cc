@@ -1,8 +1,8 @@
 // scancal compare DATASET
 #include <gflags/gflags.h>
 #include <cstdio>
+#include "apps/calibrate.h"
 #include "apps/command.h"
-#include "apps/load.h"
 #include "report/text.h"
 
 DEFINE_string(surface, "",

@@ -1,8 +1,8 @@
 // scancal transform DATASET --calibration FILE --out FILE
 #include <gflags/gflags.h>
 #include <cstdio>
+#include "apps/calibrate.h"
 #include "apps/command.h"
-#include "apps/load.h"
 #include "io/points.h"
 #include "report/calibration_json.h"
 

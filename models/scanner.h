@@ -1,10 +1,12 @@
 // What the program asks of a scanner, the half of a model that knows tables and files; and what all scanners do alike.
 #pragma once
+#include <Eigen/Core>
 #include <chrono>
 #include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 #include "io/dataset.h"
 #include "io/json_file.h"
@@ -116,5 +118,13 @@ struct Refined {
 // What every scanner does then: Summarize, bootstrap and Monte Carlo with a progress bar, names. The model adds what
 // only it can say.
 Calibration Conclude(const Dataset& dataset, const Refined& refined, const MonteCarloChoice& monte_carlo);
+
+// Tables of a result, as far as scanners share them; mm, rad.
+NumberTable TableOf(const std::vector<std::pair<std::string, Unit>>& columns);  // without rows
+NumberTable PointTable();                                                       // X, Y, Z
+void AddPoint(const Eigen::Vector3d& p, NumberTable* points);
+
+NumberTable SightTable();  // where the scanner was and the middle of what it saw: from_X .. from_Z, to_X .. to_Z
+void AddSight(const Eigen::Vector3d& from, const Eigen::Vector3d& to, NumberTable* sights);
 
 }  // namespace scancal

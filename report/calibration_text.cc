@@ -4,7 +4,6 @@
 #include <map>
 #include "io/units.h"
 #include "report/text.h"
-#include "report/text_table.h"
 
 namespace scancal {
 namespace {

@@ -2,7 +2,6 @@
 #include <cmath>
 #include "io/units.h"
 #include "report/text.h"
-#include "report/text_table.h"
 
 namespace scancal {
 namespace {

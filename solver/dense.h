@@ -14,20 +14,40 @@ struct ThinQr {
 };
 ThinQr QrOf(const Eigen::MatrixXd& matrix);  // m x n, m >= n
 
-struct Svd {  // matrix = u diag(values) v.leftCols(values.size())'
+struct Svd {               // matrix = u diag(values) v.leftCols(values.size())'
   Eigen::MatrixXd u;       // m x min(m, n)
   Eigen::VectorXd values;  // min(m, n), descending
   Eigen::MatrixXd v;       // n x n: beyond the values, what the matrix maps to zero
 };
-Svd SvdOf(const Eigen::MatrixXd& matrix);  // m x n, by one-sided rotations (as before, 8.6.3): small values are right, too
+// m x n; by one-sided rotations (Golub and Van Loan, 8.6.3), which small values survive.
+Svd SvdOf(const Eigen::MatrixXd& matrix);
 
-struct SymmetricEigen {  // symmetric = vectors diag(values) vectors'
+struct SymmetricEigen {    // symmetric = vectors diag(values) vectors'
   Eigen::VectorXd values;  // ascending
   Eigen::MatrixXd vectors;
 };
 SymmetricEigen EigenOf(const Eigen::MatrixXd& symmetric);
 
-// X of least norm among those with least |A X - B|, by complete orthogonal decomposition (as before, 5.5).
+// X of least norm among those with least |A X - B|, by complete orthogonal decomposition (Golub and Van Loan, 5.5).
 Eigen::MatrixXd LeastSquares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+// R (n x n, upper triangular) with |R t| = |F t| for every t, of a tall matrix F that is never held: rows are added in
+// any number, factors of parts of F merge. By Householder QR of the stacked rows (Lawson and Hanson, Solving Least
+// Squares Problems, 1974, ch. 27), never by F'F, which would lose the cost of a good fit (6 % at 0.5 um noise). The
+// order of rows and merges changes R by rounding and signs only.
+class TriangularFactor {
+ public:
+  explicit TriangularFactor(int columns);
+  void Add(const Eigen::Ref<const Eigen::MatrixXd>& rows);  // any number of rows x columns
+  void Merge(const TriangularFactor& other);
+  const Eigen::MatrixXd& R() const;  // folds what is still pending
+
+ private:
+  void Fold() const;
+  // R on top, then rows that wait: folding blocks of a few hundred rows costs half of folding them one by one.
+  mutable Eigen::MatrixXd stack_;
+  mutable Eigen::Index filled_;
+  mutable Eigen::MatrixXd r_;
+};
 
 }  // namespace scancal

@@ -1,7 +1,6 @@
 #include "solver/linearize.h"
 #include <glog/logging.h>
 #include "solver/dense.h"
-#include "solver/triangular_factor.h"
 
 namespace scancal {
 namespace {

@@ -1,6 +1,6 @@
 #include "solver/problem.h"
 #include <algorithm>
-#include "solver/triangular_factor.h"
+#include "solver/dense.h"
 
 namespace scancal {
 namespace {

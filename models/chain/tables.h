@@ -5,7 +5,7 @@
 #include <vector>
 #include "io/result.h"
 #include "models/chain/chain.h"
-#include "models/tables.h"
+#include "models/scanner.h"
 
 namespace scancal {
 

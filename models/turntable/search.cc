@@ -4,8 +4,8 @@
 #include <cmath>
 #include "io/progress.h"
 #include "models/line/pseudo_points.h"
-#include "models/tables.h"
-#include "solver/triangular_factor.h"
+#include "models/scanner.h"
+#include "solver/dense.h"
 
 namespace scancal::turntable {
 namespace {

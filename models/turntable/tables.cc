@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include "models/median.h"
-#include "models/tables.h"
+#include "models/scanner.h"
 
 namespace scancal::turntable {
 namespace {

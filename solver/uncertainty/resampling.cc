@@ -3,8 +3,8 @@
 #include <glog/logging.h>
 #include <algorithm>
 #include <cmath>
+#include "solver/dense.h"
 #include "solver/random.h"
-#include "solver/triangular_factor.h"
 #include "solver/uncertainty/monte_carlo.h"
 
 namespace scancal {

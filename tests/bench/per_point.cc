@@ -2,7 +2,7 @@
 #include <ceres/ceres.h>
 #include <glog/logging.h>
 #include <cmath>
-#include "solver/triangular_factor.h"
+#include "solver/dense.h"
 #include "tests/bench/measure.h"
 
 namespace scancal::bench {

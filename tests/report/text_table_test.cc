@@ -1,7 +1,7 @@
-#include "report/text_table.h"
 #include <gtest/gtest.h>
 #include <cmath>
 #include <limits>
+#include "report/text.h"
 
 namespace scancal {
 namespace {

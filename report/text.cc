@@ -1,4 +1,4 @@
-#include "report/text_table.h"
+#include "report/text.h"
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "solver/triangular_factor.h"
+#include "solver/dense.h"
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 #include "solver/random.h"
