@@ -20,6 +20,19 @@ Result<Propagation> ScannerKind::Propagate(const Calibration& calibration, const
                " gives no uncertainty of single points, expected a calibration of one that does"};
 }
 
+Json ToJson(const Sentence& sentence) {
+  if (sentence.id.empty()) return sentence.english;
+  return {{"id", sentence.id}, {"en", sentence.english}, {"de", sentence.german}};
+}
+
+std::optional<Sentence> SentenceFromJson(const Json& json) {
+  if (json.is_string()) return Sentence{json.get<std::string>()};
+  if (!json.is_object()) return std::nullopt;
+  for (const char* key : {"id", "en", "de"})
+    if (!json.contains(key) || !json[key].is_string()) return std::nullopt;
+  return Sentence{json["en"], json["de"], json["id"]};
+}
+
 Error InFile(const Dataset& dataset, const std::string& sentence) { return {dataset.file.string() + ": " + sentence}; }
 
 double UnitFactor(Unit unit, const Units& units) {

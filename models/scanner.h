@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -68,6 +69,10 @@ struct ScannerKind {
   Result<Propagation> Propagate(const Calibration& calibration, const PointRequest& points, bool distances) const;
 };
 
+// As Scanner::Data() keeps a sentence: {"id", "en", "de"}, or its English alone; nothing of what is neither.
+Json ToJson(const Sentence& sentence);
+std::optional<Sentence> SentenceFromJson(const Json& json);
+
 // "data/dataset.yaml: " and the sentence.
 Error InFile(const Dataset& dataset, const std::string& sentence);
 
@@ -109,10 +114,10 @@ class Stopwatch {  // runs from its construction on
 // What a model has computed once it comes to the end of Calibrate.
 struct Refined {
   const Solution& solution;
-  std::string residual;                    // a name of it
-  double seconds = 0;                      // of the refinement
-  PureError pure_error = {};               // what repeats within a view
-  std::vector<std::string> warnings = {};  // of the declaration and of what was read: they come first
+  std::string residual;                 // a name of it
+  double seconds = 0;                   // of the refinement
+  PureError pure_error = {};            // what repeats within a view
+  std::vector<Sentence> warnings = {};  // of the declaration and of what was read: they come first
 };
 
 // What every scanner does then: Summarize, bootstrap and Monte Carlo with a progress bar, names. The model adds what

@@ -72,7 +72,7 @@ Start ClosedForm(const PointRows& p, const SphereChoice& choice, const Eigen::Ve
 
 std::string Doubt(const Fit& fit, const Observability& seen) {
   if (!seen.undetermined.empty()) return "the points lie on a plane or a line and determine no sphere";
-  return fit.converged ? "" : fit.message;
+  return fit.converged ? "" : fit.message.english;
 }
 
 constexpr size_t kFewest = 8, kPointsTried = 400;

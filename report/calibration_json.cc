@@ -1,5 +1,6 @@
 #include "report/calibration_json.h"
 #include <cmath>
+#include <set>
 #include "solver/uncertainty/gum.h"
 
 namespace scancal {
@@ -219,6 +220,24 @@ Json MonteCarloJson(const MonteCarloSummary& summary) {
   return json;
 }
 
+// What a reader of another language reads in place of the English: each sentence once.
+Json MessagesJson(const Calibration& c, const Comparison& comparison) {
+  Json list = Json::array();
+  std::set<std::string> said;
+  const auto add = [&](const Sentence& sentence) {
+    if (!sentence.id.empty() && said.insert(sentence.english).second)
+      list.push_back({{"id", sentence.id}, {"en", sentence.english}, {"de", sentence.german}});
+  };
+  for (const auto* sentences : {&c.unreliable, &c.warnings, &c.check.names})
+    for (const Sentence& sentence : *sentences) add(sentence);
+  for (const BudgetLine& line : c.budget) add(line.source);
+  for (const ComparisonRow& row : comparison.rows) {
+    add(row.method);
+    add(row.note);
+  }
+  return list;
+}
+
 }  // namespace
 
 Json ToJson(const Calibration& c, const Enclosures& with) {
@@ -226,6 +245,7 @@ Json ToJson(const Calibration& c, const Enclosures& with) {
   json["status"] = c.ok() ? "ok" : "unreliable";
   json["unreliable"] = c.unreliable;
   json["warnings"] = c.warnings;
+  json["messages"] = MessagesJson(c, with.comparison);
   json["parameters"] = Json::array();
   for (const Parameter& parameter : c.parameters) json["parameters"].push_back(ParameterJson(parameter));
   json["determined"] = Json::object();

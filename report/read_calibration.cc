@@ -106,7 +106,7 @@ bool ReadBudget(const Json& json, Calibration* calibration) {
   if (!budget.is_array()) return false;
   for (const Json& each : budget) {
     BudgetLine& line = calibration->budget.emplace_back();
-    line.source = TextAt(each, "source");
+    line.source.english = TextAt(each, "source");
     line.type = TextAt(each, "type") == "B" ? 'B' : 'A';
     line.unit = UnitNamed(TextAt(each, "unit")).value_or(Unit::kOne);
     line.u = NumberAt(each, "value");
@@ -196,7 +196,7 @@ Result<Calibration> CalibrationFromJson(const Json& json, const std::string& fil
   Calibration result;
   result.model = json["model"];
   if (!json.contains("status") || !json["status"].is_string()) return expected("\"status\"");
-  if (json["status"] != "ok") result.unreliable.push_back("the calibration says so of itself");
+  if (json["status"] != "ok") result.unreliable.push_back({"the calibration says so of itself"});
   for (const Json& each : json["parameters"]) {
     if (!each.is_object() || !each.contains("name") || !each["name"].is_string())
       return expected("a name for every parameter");

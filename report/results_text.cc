@@ -65,7 +65,7 @@ std::string ToText(const Comparison& comparison) {
   TextTable table(header);
   std::string notes;
   for (const ComparisonRow& row : comparison.rows) {
-    if (!row.note.empty()) notes += row.method + ": " + row.note + "\n";
+    if (!row.note.empty()) notes += row.method.english + ": " + row.note.english + "\n";
     std::vector<std::string> cells = {row.method};
     for (size_t k = 0; k < row.cells.size(); ++k) cells.push_back(CellText(row.cells[k], comparison.columns[k].digits));
     cells.resize(header.size(), "-");

@@ -10,16 +10,20 @@
 namespace scancal {
 namespace {
 
-BudgetLine Line(const std::string& source, char type, Unit unit, double u, const Eigen::VectorXd& sensitivity,
+constexpr Message<> kClusteredByView{"solver.clustered_by_view", "residuals, clustered by view",
+                                     "Residuen, nach Ansichten gruppiert"};
+constexpr Message<std::string_view> kPriorOf{"solver.prior_of", "prior of {}", "Vorwissen über {}"};
+
+BudgetLine Line(const Sentence& source, char type, Unit unit, double u, const Eigen::VectorXd& sensitivity,
                 const Eigen::MatrixXd& covariance, double dof) {
   return {source, type, unit, u, Plain(sensitivity), Plain(covariance.diagonal().cwiseMax(0).cwiseSqrt()), {}, dof};
 }
 
 BudgetLine Line(const Problem& problem, const Contribution& contribution, bool from_data, double dof) {
   for (const Quantity& quantity : problem.quantities) {
-    const std::string& name = contribution.prior ? "prior of " + quantity.Source() : quantity.Source();
-    if (name == contribution.source)
-      return Line(contribution.source, from_data ? 'A' : 'B', quantity.unit, quantity.u, contribution.sensitivity,
+    const Sentence name = contribution.prior ? Say(kPriorOf, quantity.Source()) : Sentence{quantity.Source()};
+    if (name.english == contribution.source)
+      return Line(name, from_data ? 'A' : 'B', quantity.unit, quantity.u, contribution.sensitivity,
                   contribution.covariance, dof);
   }
   return {};
@@ -55,7 +59,7 @@ Headline Weighted(const Problem& problem, const Variances& variances, const Budg
 Headline Clustered(const Problem& problem, const Covariance& clustered, const Budget& budget, Eigen::Index n) {
   Headline headline{clustered.matrix, Eigen::VectorXd(n), {}};
   headline.budget.push_back(
-      Line("residuals, clustered by view", 'A', Unit::kMm, 0, Eigen::VectorXd(), clustered.matrix, clustered.dof));
+      Line(Say(kClusteredByView), 'A', Unit::kMm, 0, Eigen::VectorXd(), clustered.matrix, clustered.dof));
   for (const Contribution& contribution : budget.lines) {
     if (contribution.prior || (contribution.scope != Scope::kSystem && contribution.scope != Scope::kTarget)) continue;
     headline.covariance += contribution.covariance;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 #include "solver/problem.h"
+#include "solver/sentence.h"
 
 namespace scancal {
 
@@ -72,7 +73,7 @@ struct GridMinimum {
 };
 
 struct BudgetLine {
-  std::string source;
+  Sentence source;
   char type = 'A';  // A: from the data; B: declared
   Unit unit = Unit::kOne;
   double u = 0;                      // of the source
@@ -95,7 +96,7 @@ struct Influence {
 
 // Known lengths that took no part in the calibration: measured minus known, mm.
 struct LengthCheck {
-  std::vector<std::string> names;
+  std::vector<Sentence> names;
   std::vector<double> before, after;  // as the nominal instrument shows them, and the calibrated one
   std::vector<double> u;              // of the known lengths; 0: not known. Empty: of none
 };
@@ -158,11 +159,11 @@ struct HashedFile {
 
 struct Calibration {
   std::string model, name, residual;
-  std::vector<std::string> warnings;    // worth knowing
-  std::vector<std::string> unreliable;  // why not to rely on it; none: status ok
-  std::vector<Parameter> parameters;    // every system quantity of role estimate or consider, and the model's main ones
-  std::vector<std::string> estimated;   // the order of the covariance
-  Eigen::MatrixXd covariance;           // of the headline
+  std::vector<Sentence> warnings;      // worth knowing
+  std::vector<Sentence> unreliable;    // why not to rely on it; none: status ok
+  std::vector<Parameter> parameters;   // every system quantity of role estimate or consider, and the model's main ones
+  std::vector<std::string> estimated;  // the order of the covariance
+  Eigen::MatrixXd covariance;          // of the headline
   JointRegion joint;
   GridMinimum grid;
   std::vector<TargetSummary> targets;

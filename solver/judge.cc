@@ -1,5 +1,4 @@
 #include "solver/judge.h"
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include "solver/uncertainty/gum.h"
@@ -8,6 +7,66 @@
 namespace scancal {
 namespace {
 
+constexpr Message<std::string_view, double> kTargetsDisagree{
+    "solver.targets_disagree",
+    "{}: leaving one target out moves it {:.2g} times as far as its u explains; the targets disagree, so u is too "
+    "small, or the model lacks something",
+    "{}: Wird ein Prüfkörper weggelassen, so ändert sich der Wert {:.2g}-mal so stark, wie es u erklärt; die "
+    "Prüfkörper widersprechen einander: u ist zu klein, oder dem Modell fehlt etwas"};
+constexpr Message<std::string_view, Sentence, double, std::string_view, std::string_view, double, Sentence,
+                  std::string_view, double, Sentence>
+    kMisfit{
+        "solver.misfit",
+        "lack of fit: {} is {}, but the residuals ask for {:.2g}{}{} (F = {:.3g}, {}), which would move {} by {:.2g} "
+        "u{}; estimate it, or declare how uncertain it is, if it is what it looks like",
+        "Mangelnde Anpassung: {} ist {}, die Residuen verlangen jedoch {:.2g}{}{} (F = {:.3g}, {}); das verschöbe {} "
+        "um das {:.2g}-Fache von u{}. Schätzen oder die Unsicherheit angeben, wenn es das ist, wonach es aussieht"};
+constexpr Message<> kHeld{"solver.held", "held", "festgehalten"};
+constexpr Message<> kUnderestimated{"solver.underestimated", "considered with a smaller u",
+                                    "mit kleinerer Unsicherheit berücksichtigt"};
+constexpr Message<double> kChance{"solver.chance", "p = {:.1g}", "p = {:.1g}"};
+constexpr Message<std::string_view> kAlsoSeenAs{"solver.also_seen_as", " (also seen as {})",
+                                                " (ebenso gedeutet als {})"};
+constexpr Message<double, double> kNeighboursCorrelated{
+    "solver.neighbours_correlated",
+    "neighbouring views are correlated ({:.2g}), but count as independent: as far as that is neither form nor a wrong "
+    "model, u is too small by a factor of about {:.2g}",
+    "Benachbarte Ansichten sind korreliert ({:.2g}), zählen aber als unabhängig: Soweit dies weder Formabweichung noch "
+    "ein falsches Modell ist, ist u etwa um den Faktor {:.2g} zu klein"};
+constexpr Message<std::string_view, double, double> kDeclaredTooSmall{
+    "solver.declared_too_small",
+    "{}: declared with u = {:.3g}, but the residuals show {:.3g} (mm, rad); the larger one is used",
+    "{}: angegeben mit u = {:.3g}, die Residuen zeigen jedoch {:.3g} (mm, rad); der größere Wert wird verwendet"};
+constexpr Message<> kVariancesUnsettled{
+    "solver.variances_unsettled", "the variances did not settle; compare u with u clustered",
+    "Die Varianzen liefen nicht ein; u ist mit der gruppierten Unsicherheit zu vergleichen"};
+constexpr Message<double> kLackOfFit{
+    "solver.lack_of_fit",
+    "lack of fit: F = {:.3g}: views differ by more than the noise within them explains. The naive uncertainty is too "
+    "small; the clustered one allows for errors that are independent from view to view, not for a wrong model or form",
+    "Mangelnde Anpassung: F = {:.3g}: Die Ansichten unterscheiden sich stärker, als es das Rauschen innerhalb einer "
+    "Ansicht erklärt. Die naive Unsicherheit ist zu klein; die gruppierte lässt Abweichungen zu, die von Ansicht zu "
+    "Ansicht unabhängig sind, aber kein falsches Modell und keine Formabweichung"};
+constexpr Message<std::string_view, double> kPriorDisagrees{
+    "solver.prior_disagrees",
+    "{}: its prior and the data disagree: the result lies {:.2g} times the prior's u away from it",
+    "{}: Vorwissen und Daten widersprechen einander: Das Ergebnis liegt um das {:.2g}-Fache der Unsicherheit des "
+    "Vorwissens von diesem entfernt"};
+constexpr Message<> kOverflow{
+    "solver.overflow", "the uncertainties overflow: something was declared with an absurd u",
+    "Die Unsicherheiten übersteigen den Zahlenbereich: Etwas wurde mit einer unsinnigen Unsicherheit angegeben"};
+constexpr Message<> kTooFewViews{
+    "solver.too_few_views",
+    "too few views: not more than there are quantities to estimate, so their scatter tells nothing",
+    "Zu wenige Ansichten: nicht mehr, als Größen zu schätzen sind; ihre Streuung sagt daher nichts aus"};
+constexpr Message<Sentence> kNotConverged{"solver.not_converged", "the refinement did not converge: {}",
+                                          "Die Ausgleichung konvergierte nicht: {}"};
+constexpr Message<Sentence, std::string_view> kLeastDetermined{
+    "solver.least_determined",
+    "the refinement did not converge: {}; {} is least determined: hold it, give it a prior, or allow more iterations",
+    "Die Ausgleichung konvergierte nicht: {}; am wenigsten bestimmt ist {}: festhalten, Vorwissen angeben oder mehr "
+    "Iterationen zulassen"};
+
 constexpr double kSuspicious = 1e-3;       // a warning that a right data set raises once in a thousand
 constexpr double kContradiction = 1e-6;    // no chance any more
 constexpr double kNearly = 0.8;            // of the strongest
@@ -15,12 +74,11 @@ constexpr double kFarFromIndependent = 4;  // standard errors
 constexpr double kLeastCorrelation = 0.1;  // makes u too small by a tenth
 constexpr double kFarFromPrior = 3;        // of the prior's u
 
-std::string LeastDetermined(const std::map<std::string, double>& direction) {
+Sentence NotConverged(const Sentence& why, const std::map<std::string, double>& direction) {
   const auto worst = std::max_element(direction.begin(), direction.end(), [](const auto& a, const auto& b) {
     return std::abs(a.second) < std::abs(b.second);
   });
-  if (worst == direction.end()) return "";
-  return "; " + worst->first + " is least determined: hold it, give it a prior, or allow more iterations";
+  return worst == direction.end() ? Say(kNotConverged, why) : Say(kLeastDetermined, why, worst->first);
 }
 
 void JudgeJackknife(const Solution& solution, const Jackknife& jackknife, double noise_dof, Calibration* result) {
@@ -34,14 +92,9 @@ void JudgeJackknife(const Solution& solution, const Jackknife& jackknife, double
     const double p = FUpperTail(ratio, expected.dof[e], noise_dof);
     if (p >= kSuspicious) continue;
     (p < kContradiction ? result->unreliable : result->warnings)
-        .push_back(fmt::format(
-            "{}: leaving one target out moves it {:.2g} times as far as its u explains; the targets disagree, "
-            "so u is too small, or the model lacks something",
-            result->estimated[k], std::sqrt(ratio)));
+        .push_back(Say(kTargetsDisagree, result->estimated[k], std::sqrt(ratio)));
   }
 }
-
-std::string Shown(double p) { return p < 1e-16 ? "p < 1e-16" : fmt::format("p = {:.1g}", p); }
 
 // Several sources may look alike: the first, in the model's order, that explains nearly as much as the strongest.
 void JudgeMisfits(Calibration* result) {
@@ -67,13 +120,11 @@ void JudgeMisfits(Calibration* result) {
     which = result->estimated[k];
   }
   (furthest > 1 ? result->unreliable : result->warnings)
-      .push_back(fmt::format(
-          "lack of fit: {} is {}, but the residuals ask for {:.2g}{}{} (F = {:.3g}, {}), which would move {} by "
-          "{:.2g} u{}; estimate it, or declare how uncertain it is, if it is what it looks like",
-          strongest->source, strongest->considered ? "considered with a smaller u" : "held", strongest->size,
-          strongest->unit == Unit::kOne ? "" : " " + std::string(Name(strongest->unit)),
-          strongest->dof1 > 1 ? " rms" : "", strongest->F, Shown(strongest->p), which, furthest,
-          others.empty() ? "" : " (also seen as " + others + ")"));
+      .push_back(Say(kMisfit, strongest->source, Say(strongest->considered ? kUnderestimated : kHeld), strongest->size,
+                     strongest->unit == Unit::kOne ? "" : " " + std::string(Name(strongest->unit)),
+                     strongest->dof1 > 1 ? " rms" : "", strongest->F,
+                     strongest->p < 1e-16 ? Sentence{"p < 1e-16"} : Say(kChance, strongest->p), which, furthest,
+                     others.empty() ? Sentence{} : Say(kAlsoSeenAs, others)));
 }
 
 void JudgeNeighbours(const Solution& solution, Calibration* result) {
@@ -85,27 +136,19 @@ void JudgeNeighbours(const Solution& solution, Calibration* result) {
   if (neighbours.correlation < std::max(significant, kLeastCorrelation)) return;
   // The variance of the mean of a series whose correlation falls as rho^lag is (1 + rho) / (1 - rho) times that of an
   // independent one (Zhang, Metrologia 43, 2006, S276).
-  result->warnings.push_back(fmt::format(
-      "neighbouring views are correlated ({:.2g}), but count as independent: as far as that is neither form "
-      "nor a wrong model, u is too small by a factor of about {:.2g}",
-      neighbours.correlation, std::sqrt((1 + neighbours.correlation) / (1 - neighbours.correlation))));
+  result->warnings.push_back(Say(kNeighboursCorrelated, neighbours.correlation,
+                                 std::sqrt((1 + neighbours.correlation) / (1 - neighbours.correlation))));
 }
 
 void JudgeVariances(const Variances& variances, Calibration* result) {
   for (const Exceeded& exceeded : variances.exceeded)
-    result->warnings.push_back(
-        fmt::format("{}: declared with u = {:.3g}, but the residuals show {:.3g} (mm, rad); the larger one is used",
-                    exceeded.source, exceeded.declared, exceeded.estimated));
-  if (!variances.converged) result->warnings.push_back("the variances did not settle; compare u with u clustered");
+    result->warnings.push_back(Say(kDeclaredTooSmall, exceeded.source, exceeded.declared, exceeded.estimated));
+  if (!variances.converged) result->warnings.push_back(Say(kVariancesUnsettled));
 }
 
 void JudgeFit(const LackOfFit& fit, Calibration* result) {
   if (fit.dof1 == 0 || fit.p >= kSuspicious) return;
-  result->warnings.push_back(fmt::format(
-      "lack of fit: F = {:.3g}: views differ by more than the noise within them explains. The naive "
-      "uncertainty is too small; the clustered one allows for errors that are independent from view to view, "
-      "not for a wrong model or form",
-      fit.F));
+  result->warnings.push_back(Say(kLackOfFit, fit.F));
 }
 
 // A prior is a measurement; a result far from it says that one of the two is wrong.
@@ -114,10 +157,7 @@ void JudgePriors(const Problem& problem, Calibration* result) {
     const Parameter* parameter = result->Find(quantity.name);
     if (!parameter || parameter->role != Role::kEstimate || !(quantity.u > 0)) continue;
     const double apart = std::abs(parameter->value - quantity.value) / quantity.u;
-    if (apart > kFarFromPrior)
-      result->unreliable.push_back(
-          fmt::format("{}: its prior and the data disagree: the result lies {:.2g} times the prior's u away from it",
-                      quantity.name, apart));
+    if (apart > kFarFromPrior) result->unreliable.push_back(Say(kPriorDisagrees, quantity.name, apart));
   }
 }
 
@@ -133,14 +173,10 @@ void AddDoubts(const Solution& solution, const Jackknife& jackknife, double nois
     JudgeFit(calibration->lack_of_fit, calibration);
   }
   JudgePriors(solution.problem, calibration);
-  if (!calibration->covariance.allFinite())
-    calibration->unreliable.push_back("the uncertainties overflow: something was declared with an absurd u");
-  if (!calibration->estimated.empty() && noise_dof < 1)
-    calibration->unreliable.push_back(
-        "too few views: not more than there are quantities to estimate, so their scatter tells nothing");
+  if (!calibration->covariance.allFinite()) calibration->unreliable.push_back(Say(kOverflow));
+  if (!calibration->estimated.empty() && noise_dof < 1) calibration->unreliable.push_back(Say(kTooFewViews));
   if (!solution.fit.converged)
-    calibration->unreliable.push_back("the refinement did not converge: " + solution.fit.message +
-                                      LeastDetermined(calibration->weakest));
+    calibration->unreliable.push_back(NotConverged(solution.fit.message, calibration->weakest));
 }
 
 }  // namespace scancal

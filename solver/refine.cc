@@ -5,6 +5,13 @@
 namespace scancal {
 namespace {
 
+constexpr Message<> kSingular{"solver.singular", "the equations are singular", "die Gleichungen sind singulär"};
+constexpr Message<> kStillMoves{"solver.still_moves",
+                                "the last step is still larger than a thousandth of the uncertainty",
+                                "der letzte Schritt ist noch größer als ein Tausendstel der Unsicherheit"};
+constexpr Message<int> kOutOfSteps{"solver.out_of_steps", "no convergence after {} iterations",
+                                   "keine Konvergenz nach {} Iterationen"};
+
 constexpr int kPolishSteps = 100;     // large residuals let Gauss-Newton gain a fifth of a digit a step
 constexpr double kNegligible = 1e-3;  // of a standard uncertainty
 constexpr double kSettled = 1e-10;    // of a standard uncertainty: nothing is left to gain
@@ -146,7 +153,7 @@ Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& o
   const auto summary = SolveByCeres(problem, storey, options, &fit.estimate);
   fit.iterations = static_cast<int>(summary.iterations.size());
   if (!summary.IsSolutionUsable()) {
-    fit.message = summary.message;
+    fit.message = {summary.message};
     return fit;
   }
   Linearization linear = Linearize(problem, fit.estimate, storey);
@@ -154,7 +161,7 @@ Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& o
   for (int k = 0; k < kPolishSteps; ++k) {
     const Estimate step = GaussNewtonStep(linear);
     if (!AllFinite(step)) {
-      fit.message = "the equations are singular";
+      fit.message = Say(kSingular);
       break;
     }
     // Length over noise is the relative offset of Bates and Watts (1981): no quantity moves by more of its uncertainty.
@@ -179,9 +186,7 @@ Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& o
   }
   fit.cost = linear.cost;
   if (!fit.converged && fit.message.empty())
-    fit.message = summary.termination_type == ceres::CONVERGENCE
-                      ? "the last step is still larger than a thousandth of the uncertainty"
-                      : "no convergence after " + std::to_string(fit.iterations) + " iterations";
+    fit.message = summary.termination_type == ceres::CONVERGENCE ? Say(kStillMoves) : Say(kOutOfSteps, fit.iterations);
   return fit;
 }
 

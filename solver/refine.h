@@ -1,9 +1,9 @@
 // Joint refinement: Ceres' Levenberg-Marquardt (Marquardt 1963) to the neighbourhood, Gauss-Newton by QR to the last
 // digits.
 #pragma once
-#include <string>
 #include "solver/linearize.h"
 #include "solver/problem.h"
+#include "solver/sentence.h"
 
 namespace scancal {
 
@@ -21,7 +21,7 @@ struct Fit {
   int iterations = 0;      // Ceres' and the polishing ones
   bool converged = false;  // the last step is below 1e-12 of every system quantity, below 1e-3 of its uncertainty, or
                            // rounding: below 1e-10 of every system quantity and of no use
-  std::string message;     // why not
+  Sentence message;        // why not
 };
 
 // Which storey carries the fit: the nodes where they are exact, else the views.

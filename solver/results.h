@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 #include "solver/problem.h"
+#include "solver/sentence.h"
 #include "solver/uncertainty/measurand.h"
 
 namespace scancal {
@@ -22,9 +23,9 @@ struct ComparisonCell {
 };
 
 struct ComparisonRow {
-  std::string method;
+  Sentence method;
   std::vector<ComparisonCell> cells;  // one a column; none: the method was left out, as the note says
-  std::string note;                   // minimum on the edge, no convergence
+  Sentence note;                      // minimum on the edge, no convergence
 };
 
 struct Comparison {

@@ -6,6 +6,23 @@
 namespace scancal::flange_ball {
 namespace {
 
+constexpr Message<double, std::string_view, std::string_view, std::string_view> kBallNearAxis{
+    "flange_ball.ball_near_axis",
+    "the ball lies {:.2g} mm from the axis of the last joint: {} and ball_z are hardly determined one by one, only "
+    "where the ball is; hold theta_{} and alpha_{}, or give priors",
+    "Die Kugel liegt {:.2g} mm neben der Achse des letzten Gelenks: {} und ball_z sind einzeln kaum bestimmt, nur der "
+    "Ort der Kugel; theta_{} und alpha_{} festhalten oder Vorwissen angeben"};
+constexpr Message<double, double> kHeldOutStrays{
+    "flange_ball.held_out_strays",
+    "at the locations held out the ball strays by {:.3g} mm on average, {:.2g} times as far as where the robot was "
+    "calibrated: the model lacks something there, and u does not hold it; calibrate with more locations of the tool",
+    "An den zurückgehaltenen Orten streut die Kugel im Mittel um {:.3g} mm, {:.2g}-mal so weit wie dort, wo der "
+    "Roboter kalibriert wurde: Dem Modell fehlt dort etwas, das u nicht enthält; mit mehr Orten des Werkzeugs "
+    "kalibrieren"};
+constexpr Message<std::string_view> kSpacingAt{"flange_ball.spacing_at", "spacing at {}", "Pfannenabstand an {}"};
+constexpr Message<> kNominalFitted{"flange_ball.nominal_fitted", "nominal, ball fitted", "nominell, Kugel angepasst"};
+constexpr Message<> kRefined{"flange_ball.refined", "refined", "verfeinert"};
+
 double Poses(const std::vector<Model::Target>& tools) {
   double poses = 0;
   for (const Model::Target& tool : tools) poses += static_cast<double>(tool.views.size());
@@ -79,20 +96,14 @@ void JudgeBall(const Robot& robot, Calibration* calibration) {
     if (!parameter || parameter->role != Role::kEstimate) return;
     free += (free.empty() ? "" : ", ") + parameter->name;
   }
-  calibration->warnings.push_back(fmt::format(
-      "the ball lies {:.2g} mm from the axis of the last joint: {} and ball_z are hardly determined one by one, only "
-      "where the ball is; hold theta_{} and alpha_{}, or give priors",
-      from_axis, free, before, before));
+  calibration->warnings.push_back(Say(kBallNearAxis, from_axis, free, before, before));
 }
 
 // Warns of a ball that strays much farther where the tool was held out (mean spreads, mm).
 void JudgeHeldOut(double spread, double held_out, Calibration* calibration) {
   constexpr double kMuchMore = 1.5;
   if (held_out < kMuchMore * spread) return;
-  calibration->warnings.push_back(fmt::format(
-      "at the locations held out the ball strays by {:.3g} mm on average, {:.2g} times as far as where the robot was "
-      "calibrated: the model lacks something there, and u does not hold it; calibrate with more locations of the tool",
-      held_out, held_out / spread));
+  calibration->warnings.push_back(Say(kHeldOutStrays, held_out, held_out / spread));
 }
 
 }  // namespace
@@ -127,7 +138,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
               robot = RobotOf(declaration_.model.links(), solution);
   for (size_t t = 0; t < targets_.size(); ++t) result.targets[t].geometry = GeometryOf(robot, targets_[t]);
   for (const Model::Target& tool : check_) {
-    result.check.names.push_back("spacing at " + tool.name);
+    result.check.names.push_back(Say(kSpacingAt, tool.name));
     result.check.before.push_back(SeatingOf(nominal, tool).spacing - Spacing());
     result.check.after.push_back(SeatingOf(robot, tool).spacing - Spacing());
     result.check.u.push_back(declaration_.model.quantities()[Model::kSpacing].u);
@@ -144,7 +155,7 @@ Result<Comparison> Scanner::Compare(const CompareChoice&) const {
   comparison.columns = {{"calibrated with/mm"}, {"held out/mm"}, {"worst spacing/mm"}, {"worst, held out/mm"}};
   for (const auto* tools : {&targets_, &check_})
     for (const Model::Target& tool : *tools) comparison.columns.push_back({tool.name + "/mm"});
-  const auto add = [&](const std::string& method, const Robot& robot, const std::string& note) {
+  const auto add = [&](const Sentence& method, const Robot& robot, const Sentence& note) {
     ComparisonRow& row = comparison.rows.emplace_back();
     row.method = method;
     row.note = note;
@@ -156,8 +167,8 @@ Result<Comparison> Scanner::Compare(const CompareChoice&) const {
     for (const auto* tools : {&targets_, &check_})
       for (const Model::Target& tool : *tools) row.cells.push_back({SeatingOf(robot, tool).spread});
   };
-  add("nominal, ball fitted", FitBall(declaration_.model.links(), targets_), "");
-  add("refined", RobotOf(declaration_.model.links(), solution), solution.fit.message);
+  add(Say(kNominalFitted), FitBall(declaration_.model.links(), targets_), {});
+  add(Say(kRefined), RobotOf(declaration_.model.links(), solution), solution.fit.message);
   return comparison;
 }
 

@@ -8,6 +8,11 @@
 namespace scancal::robot_ball {
 namespace {
 
+constexpr Message<std::string_view, size_t, size_t> kLengthsOfOnePose{
+    "robot_ball.lengths_of_one_pose",
+    "{}: {} of {} lengths were seen from one pose: they test the scanner, not the robot",
+    "{}: {} von {} Längen wurden aus einer einzigen Pose gesehen: Sie prüfen den Scanner, nicht den Roboter"};
+
 constexpr double kMostOff = 0.4;  // logarithm of half as much again
 
 struct BallPair {
@@ -119,10 +124,7 @@ Result<CheckLengths> ReadCheck(const CheckFiles& paths, const std::filesystem::p
           "no station of " + poses.table.name() + " saw both " + name + "; expected them in poses of one station");
   }
   if (from_one_pose > 0)
-    result.warnings.push_back(
-        fmt::format("{}: {} of {} lengths were seen from one pose: they test the scanner, not the "
-                    "robot",
-                    pairs.table.name(), from_one_pose, result.lengths.size()));
+    result.warnings.push_back(Say(kLengthsOfOnePose, pairs.table.name(), from_one_pose, result.lengths.size()));
   return result;
 }
 

@@ -46,7 +46,7 @@ double DeclaredInfluence(const Dataset& dataset, const std::string& name) {
   return 0;
 }
 
-void Append(const std::vector<std::string>& more, std::vector<std::string>* all) {
+void Append(const std::vector<Sentence>& more, std::vector<Sentence>* all) {
   all->insert(all->end(), more.begin(), more.end());
 }
 

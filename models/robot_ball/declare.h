@@ -7,6 +7,7 @@
 #include "io/result.h"
 #include "models/chain/declare.h"
 #include "models/robot_ball.h"
+#include "solver/sentence.h"
 
 namespace scancal::robot_ball {
 
@@ -17,7 +18,7 @@ struct Declaration {
   bool centres_have_u = false;       // the balls' noise was declared line by line
   LinkSetting links;
   std::vector<std::filesystem::path> files;  // all that were read, dataset.yaml first
-  std::vector<std::string> warnings;         // worth knowing
+  std::vector<Sentence> warnings;            // worth knowing
 };
 
 // Takes every key of the data set and reads its tables. Errors name file, line and column, what was found and a remedy;

@@ -13,6 +13,34 @@
 namespace scancal::robot_ball {
 namespace {
 
+constexpr Message<std::string_view, double, double, double> kOneAxis{
+    "robot_ball.one_axis",
+    "{}: within each station the flange turns about one axis only, ({:.2f}, {:.2f}, {:.2f}) of its own frame: along it "
+    "the hand-eye is not determined; add poses that turn about another",
+    "{}: An jeder Station dreht sich der Flansch nur um eine Achse, ({:.2f}; {:.2f}; {:.2f}) in seinem eigenen System: "
+    "Längs dieser ist die Hand-Auge-Transformation nicht bestimmt; Posen ergänzen, die um eine andere drehen"};
+constexpr Message<std::string_view, size_t, size_t, std::string_view> kStationsOfOnePose{
+    "robot_ball.stations_of_one_pose",
+    "{}: {} of {} stations were seen from one pose only, which says nothing about robot and hand-eye: {}",
+    "{}: {} von {} Stationen wurden nur aus einer Pose gesehen, was nichts über Roboter und Hand-Auge-Transformation "
+    "sagt: {}"};
+constexpr Message<std::string_view, size_t, size_t, std::string_view> kFewBalls{
+    "robot_ball.few_balls", "{}: {} poses saw less than {} balls, too few to place the artifact by themselves: {}",
+    "{}: {} Posen sahen weniger als {} Kugeln, zu wenige, um das Normal für sich allein zu verorten: {}"};
+constexpr Message<std::string_view, std::string_view, double, double> kPoseOff{
+    "robot_ball.pose_off",
+    "pose {} of station {}: its balls lie {:.2g} mm off, {:.2g} times the median of all poses; check its joint angles "
+    "and balls, or leave it out",
+    "Pose {} an Station {}: Ihre Kugeln liegen um {:.2g} mm daneben, das {:.2g}-Fache des Medians aller Posen; "
+    "Gelenkwinkel und Kugeln prüfen oder die Pose weglassen"};
+constexpr Message<std::string_view, double, double> kOtherLength{
+    "robot_ball.other_length", "check: {}: measured {:.6g} mm, known as {:.6g} mm: another unit, or other balls?",
+    "Prüfung: {}: gemessen {:.6g} mm, bekannt als {:.6g} mm: eine andere Einheit oder andere Kugeln?"};
+constexpr Message<double, double> kWorseThanNominal{
+    "robot_ball.worse_than_nominal",
+    "check: the known lengths are off by {:.2g} mm on average, more than with the nominal robot ({:.2g} mm)",
+    "Prüfung: Die bekannten Längen weichen im Mittel um {:.2g} mm ab, mehr als mit dem nominellen Roboter ({:.2g} mm)"};
+
 constexpr size_t kFewestBalls = 3;
 constexpr double kLeastTurn_rad = 0.0175;  // one degree, rms
 
@@ -33,7 +61,7 @@ Result<void> CheckReach(const Measurements& data, const std::string& where) {
 }
 
 // What the poses of each station turn v by, rms over the poses: singular values of (R_i - R_1) v.
-Result<void> CheckTurns(const Measurements& data, const std::string& where, std::vector<std::string>* warnings) {
+Result<void> CheckTurns(const Measurements& data, const std::string& where, std::vector<Sentence>* warnings) {
   std::vector<Eigen::Matrix3d> turns;
   for (const Station& station : data.stations) {
     const Eigen::Matrix3d first = FlangeOf(data, station.views.front()).linear();
@@ -51,15 +79,12 @@ Result<void> CheckTurns(const Measurements& data, const std::string& where, std:
                     where, turn[0] / kDegree)};
   if (turn[2] < kLeastTurn_rad) {
     const Eigen::Vector3d axis = svd.v.col(2);
-    warnings->push_back(
-        fmt::format("{}: within each station the flange turns about one axis only, ({:.2f}, {:.2f}, {:.2f}) of its own "
-                    "frame: along it the hand-eye is not determined; add poses that turn about another",
-                    where, axis[0], axis[1], axis[2]));
+    warnings->push_back(Say(kOneAxis, where, axis[0], axis[1], axis[2]));
   }
   return {};
 }
 
-Result<void> CheckStations(const Measurements& data, const std::string& where, std::vector<std::string>* warnings) {
+Result<void> CheckStations(const Measurements& data, const std::string& where, std::vector<Sentence>* warnings) {
   std::vector<std::string> once, few;
   for (const Station& station : data.stations) {
     std::set<int> balls;
@@ -79,14 +104,8 @@ Result<void> CheckStations(const Measurements& data, const std::string& where, s
                  ": every station was seen from one pose only, expected two or more: one pose says where the "
                  "artifact is, and nothing about robot and hand-eye"};
   if (!once.empty())
-    warnings->push_back(
-        fmt::format("{}: {} of {} stations were seen from one pose only, which says nothing about robot "
-                    "and hand-eye: {}",
-                    where, once.size(), data.stations.size(), Listed(once)));
-  if (!few.empty())
-    warnings->push_back(
-        fmt::format("{}: {} poses saw less than {} balls, too few to place the artifact by themselves: {}", where,
-                    few.size(), kFewestBalls, Listed(few)));
+    warnings->push_back(Say(kStationsOfOnePose, where, once.size(), data.stations.size(), Listed(once)));
+  if (!few.empty()) warnings->push_back(Say(kFewBalls, where, few.size(), kFewestBalls, Listed(few)));
   return {};
 }
 
@@ -277,10 +296,7 @@ void JudgePoses(const Measurements& data, const JointFit& fit, Calibration* resu
   std::erase_if(
       poses, [&, worst = poses.empty() ? 0 : poses.front().rms](const OffPose& pose) { return pose.rms < worst / 2; });
   for (size_t k = 0; k < poses.size() && k < kNamed; ++k)
-    result->unreliable.push_back(fmt::format(
-        "pose {} of station {}: its balls lie {:.2g} mm off, {:.2g} times the median of all poses; check its "
-        "joint angles and balls, or leave it out",
-        poses[k].pose, poses[k].station, poses[k].rms, poses[k].rms / usual));
+    result->unreliable.push_back(Say(kPoseOff, poses[k].pose, poses[k].station, poses[k].rms, poses[k].rms / usual));
 }
 
 void JudgeCheck(const Measurements& data, Calibration* result) {
@@ -288,21 +304,16 @@ void JudgeCheck(const Measurements& data, Calibration* result) {
   for (size_t k = 0; k < check.after.size(); ++k) {
     if (std::abs(check.after[k]) <= kOtherUnit * data.check[k].distance) continue;
     result->unreliable.push_back(
-        fmt::format("check: {}: measured {:.6g} mm, known as {:.6g} mm: another unit, or other "
-                    "balls?",
-                    check.names[k], data.check[k].distance + check.after[k], data.check[k].distance));
+        Say(kOtherLength, check.names[k].english, data.check[k].distance + check.after[k], data.check[k].distance));
     return;
   }
   const double before = SizeOfErrors(check.before).mean, after = SizeOfErrors(check.after).mean;
-  if (after > before)
-    result->unreliable.push_back(fmt::format(
-        "check: the known lengths are off by {:.2g} mm on average, more than with the nominal robot ({:.2g} mm)", after,
-        before));
+  if (after > before) result->unreliable.push_back(Say(kWorseThanNominal, after, before));
 }
 
 }  // namespace
 
-Result<void> CheckPoses(const Measurements& data, const std::string& where, std::vector<std::string>* warnings) {
+Result<void> CheckPoses(const Measurements& data, const std::string& where, std::vector<Sentence>* warnings) {
   SCANCAL_RETURN_IF_ERROR(CheckReach(data, where));
   SCANCAL_RETURN_IF_ERROR(CheckStations(data, where, warnings));
   return CheckTurns(data, where, warnings);

@@ -5,6 +5,7 @@
 #include <vector>
 #include "io/result.h"
 #include "models/robot_ball/fit.h"
+#include "solver/sentence.h"
 
 namespace scancal::robot_ball {
 
@@ -12,7 +13,7 @@ namespace scancal::robot_ball {
 // the artifact); stations that were all seen once; a station with less than three balls in all its poses, whose pose is
 // open; flange poses that are no robot's reach. Warned of: poses that turn about one axis only, a station seen once,
 // poses with less than three balls. where: the table of the poses, for messages.
-Result<void> CheckPoses(const Measurements& data, const std::string& where, std::vector<std::string>* warnings);
+Result<void> CheckPoses(const Measurements& data, const std::string& where, std::vector<Sentence>* warnings);
 
 struct WrongBall {
   std::string pose, ball;

@@ -13,6 +13,15 @@
 namespace scancal::robot_ball {
 namespace {
 
+constexpr Message<> kNominalRobot{"robot_ball.nominal_robot", "nominal robot, first hand-eye",
+                                  "nomineller Roboter, erste Hand-Auge"};
+constexpr Message<> kRen2012{"robot_ball.ren2012", "Ren 2012, single sphere", "Ren 2012, einzelne Kugel"};
+constexpr Message<> kMu2017{"robot_ball.mu2017", "Mu 2017, distances", "Mu 2017, Abstände"};
+constexpr Message<> kZhou2025{"robot_ball.zhou2025", "Zhou 2025, corrected distances",
+                              "Zhou 2025, korrigierte Abstände"};
+constexpr Message<> kJoint{"robot_ball.joint", "joint refinement", "gemeinsame Ausgleichung"};
+constexpr Message<std::string_view> kLeftOut{"robot_ball.left_out", "left out: {}", "weggelassen: {}"};
+
 using Eigen::Isometry3d, Eigen::Matrix3d, Eigen::Vector3d;
 using SeenBall = Model::SeenBall;
 using View = Model::View;
@@ -111,7 +120,7 @@ Station MostSeenSphere(const Measurements& data) {
 constexpr size_t kMostPositions = 12;  // that fit into a line
 
 struct Method {
-  const char* name;
+  Sentence name;
   std::function<Result<Kinematics>()> find;
 };
 
@@ -133,14 +142,14 @@ Result<double> Misclosure(const Measurements& data, const Kinematics& setup) {
 }
 
 ComparisonRow RowOf(const Measurements& data, const Method& method) {
-  ComparisonRow row{method.name, {}, ""};
+  ComparisonRow row{method.name, {}, {}};
   Progress progress(method.name);
   const Stopwatch watch;
   const Result<Kinematics> setup = method.find();
   const double seconds = watch.Seconds();
   const Result<double> misclosure = setup.ok() ? Misclosure(data, *setup) : Result<double>(setup.error());
   if (!misclosure.ok()) {
-    row.note = "left out: " + misclosure.error().message;
+    row.note = Say(kLeftOut, misclosure.error().message);
     return row;
   }
   if (!data.check.empty()) {
@@ -218,11 +227,11 @@ Result<Comparison> Scanner::Compare(const CompareChoice&) const {
     comparison.columns.push_back({std::to_string(k + 1), 2});
   comparison.columns.push_back({"rms of balls/mm"});
   comparison.columns.push_back({"s", 2, true});
-  const std::vector<Method> methods = {{"nominal robot, first hand-eye", [&] { return VirtualPointHandEye(data); }},
-                                       {"Ren 2012, single sphere", [&] { return Ren2012(data); }},
-                                       {"Mu 2017, distances", [&] { return Mu2017(data); }},
-                                       {"Zhou 2025, corrected distances", [&] { return Zhou2025(data); }},
-                                       {"joint refinement", [&]() -> Result<Kinematics> {
+  const std::vector<Method> methods = {{Say(kNominalRobot), [&] { return VirtualPointHandEye(data); }},
+                                       {Say(kRen2012), [&] { return Ren2012(data); }},
+                                       {Say(kMu2017), [&] { return Mu2017(data); }},
+                                       {Say(kZhou2025), [&] { return Zhou2025(data); }},
+                                       {Say(kJoint), [&]() -> Result<Kinematics> {
                                           SCANCAL_ASSIGN_OR_RETURN(const Kinematics start, InitialHandEye(data));
                                           SCANCAL_ASSIGN_OR_RETURN(const JointFit fit,
                                                                    FitJointly(data, model_, start.flange_from_scanner));

@@ -74,7 +74,7 @@ void AddGeometry(const JointFit& fit, Calibration* result) {
 
 void AddCheck(const Measurements& data, const Kinematics& before, const Kinematics& after, Calibration* result) {
   for (const CheckLength& length : data.check) {
-    result->check.names.push_back(length.name);
+    result->check.names.push_back({length.name});
     result->check.u.push_back(length.u);
   }
   result->check.before = SpacingErrors(data, before);

@@ -14,6 +14,14 @@
 namespace scancal::robot_ball {
 namespace {
 
+constexpr Message<std::string_view, size_t, size_t, double> kPointsSetAside{
+    "robot_ball.points_set_aside",
+    "{}: {} of {} points on balls were set aside, farther than {} standard deviations from the sphere",
+    "{}: {} von {} Punkten auf Kugeln wurden ausgesondert, weiter als {} Standardabweichungen von der Kugel entfernt"};
+constexpr Message<std::string_view, size_t, std::string_view> kEmptyPoses{
+    "robot_ball.empty_poses", "{}: no ball was seen from {} of its poses, which are left out: {}",
+    "{}: Aus {} der Posen wurde keine Kugel gesehen, sie sind weggelassen: {}"};
+
 constexpr double kNormTolerance = 1e-3;  // a quaternion written with four digits
 const std::vector<std::string> kQuaternion = {"qx", "qy", "qz", "qw"};
 
@@ -122,9 +130,7 @@ Result<void> FitBalls(const std::filesystem::path& folder, const Units& units, d
     set_aside += static_cast<size_t>(sphere.set_aside);
   }
   if (set_aside > 0)
-    observations->warnings.push_back(
-        fmt::format("{}: {} of {} points on balls were set aside, farther than {} standard deviations from the sphere",
-                    table.name(), set_aside, points_read, kOffSphere));
+    observations->warnings.push_back(Say(kPointsSetAside, table.name(), set_aside, points_read, kOffSphere));
   return {};
 }
 
@@ -296,7 +302,7 @@ Result<void> AttachBalls(const Observations& observations, const std::vector<std
   return {};
 }
 
-std::vector<Station> TakeSeenStations(Poses* poses, std::vector<std::string>* warnings) {
+std::vector<Station> TakeSeenStations(Poses* poses, std::vector<Sentence>* warnings) {
   std::vector<Station> stations;
   std::vector<std::string> empty;
   for (Station& station : poses->stations) {
@@ -307,9 +313,7 @@ std::vector<Station> TakeSeenStations(Poses* poses, std::vector<std::string>* wa
     }
     if (!kept.views.empty()) stations.push_back(std::move(kept));
   }
-  if (!empty.empty())
-    warnings->push_back(fmt::format("{}: no ball was seen from {} of its poses, which are left out: {}",
-                                    poses->table.name(), empty.size(), Listed(empty)));
+  if (!empty.empty()) warnings->push_back(Say(kEmptyPoses, poses->table.name(), empty.size(), Listed(empty)));
   return stations;
 }
 

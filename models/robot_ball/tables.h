@@ -6,6 +6,7 @@
 #include <vector>
 #include "io/table.h"
 #include "models/robot_ball.h"
+#include "solver/sentence.h"
 
 namespace scancal::robot_ball {
 
@@ -43,7 +44,7 @@ struct Observations {
   std::vector<SeenCentre> seen;              // one a row
   bool fitted = false;                       // to points
   std::vector<std::filesystem::path> files;  // of points
-  std::vector<std::string> warnings;
+  std::vector<Sentence> warnings;
   const std::string& Pose(size_t row) const { return table.Text("pose", row); }
   const std::string& Ball(size_t row) const { return table.Text("ball", row); }
 };
@@ -66,7 +67,7 @@ Result<void> AttachBalls(const Observations& observations, const std::vector<std
 
 // Moves the stations out of the table, without the poses that saw no ball, which are warned of, and without stations
 // that have no other.
-std::vector<Station> TakeSeenStations(Poses* poses, std::vector<std::string>* warnings);
+std::vector<Station> TakeSeenStations(Poses* poses, std::vector<Sentence>* warnings);
 
 struct CheckFiles {
   std::filesystem::path poses, observations, distances;
@@ -75,7 +76,7 @@ struct CheckFiles {
 struct CheckLengths {
   std::vector<CheckLength> lengths;
   std::vector<std::filesystem::path> files;  // of points on balls
-  std::vector<std::string> warnings;
+  std::vector<Sentence> warnings;
 };
 
 // distances: columns ball_a, ball_b, distance[, u]; the others as in the calibration. Every station that saw both balls

@@ -62,7 +62,7 @@ Declaration Parsed(const Json& json) {
   result.u_of_spheres = json.at("u_of_spheres").get<std::vector<double>>();
   if (result.u_of_spheres.size() != data.spheres.size()) throw std::out_of_range("u_of_spheres");
   result.centres_have_u = json.at("centres_have_u");
-  result.warnings = json.at("warnings").get<std::vector<std::string>>();
+  for (const Json& each : json.at("warnings")) result.warnings.push_back(SentenceFromJson(each).value());
   for (const Json& each : json.at("stations")) {
     Station& station = data.stations.emplace_back();
     station.name = each.at("name");
@@ -97,10 +97,11 @@ Json ToJson(const Declaration& declaration) {
                {"usual_ball_noise", data.usual_ball_noise},
                {"u_of_spheres", declaration.u_of_spheres},
                {"centres_have_u", declaration.centres_have_u},
-               {"warnings", declaration.warnings},
+               {"warnings", Json::array()},
                {"spheres", Json::array()},
                {"stations", Json::array()},
                {"check", Json::array()}};
+  for (const Sentence& warning : declaration.warnings) json["warnings"].push_back(scancal::ToJson(warning));
   for (const Model::Sphere& sphere : data.spheres)
     json["spheres"].push_back({{"name", sphere.name}, {"centre", Numbers(sphere.centre)}});
   for (const Station& station : data.stations) {

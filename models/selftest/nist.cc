@@ -218,7 +218,7 @@ SelftestRow Check(const NistModel& model, const NistData& data) {
           .values = Compare(solved.fit.estimate.system, data.values, kValueDigits),
           .deviations = Compare(u, data.deviations, model.deviation_digits),
           .iterations = solved.fit.iterations,
-          .note = data.note + (*model.note ? model.note : solved.fit.message)};
+          .note = data.note + (*model.note ? model.note : solved.fit.message.english)};
 }
 
 }  // namespace scancal::selftest

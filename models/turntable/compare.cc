@@ -1,5 +1,4 @@
 // The published search and the joint refinements on the same data.
-#include <fmt/format.h>
 #include <array>
 #include <cmath>
 #include "models/turntable/scanner.h"
@@ -7,6 +6,20 @@
 
 namespace scancal::turntable {
 namespace {
+
+constexpr Message<Sentence, double> kGrid{"turntable.grid", "grid, {}, step {:g}", "Gitter, {}, Schritt {:g}"};
+constexpr Message<> kAsPublished{"turntable.as_published", "as published", "veröffentlicht"};
+constexpr Message<> kOrthogonalFit{"turntable.orthogonal_fit", "orthogonal", "orthogonal"};
+constexpr Message<> kJointPlane{"turntable.joint_plane", "joint, point to plane", "gemeinsam, Punkt–Ebene"};
+constexpr Message<> kJointDepth{"turntable.joint_depth", "joint, depth", "gemeinsam, Tiefe"};
+constexpr Message<> kJointTilts{"turntable.joint_tilts", "joint, depth, weighted, tilts",
+                                "gemeinsam, Tiefe, gewichtet, Kippung"};
+constexpr Message<> kJointWeighted{"turntable.joint_weighted", "joint, depth, weighted", "gemeinsam, Tiefe, gewichtet"};
+constexpr Message<double> kTooManyNodes{"turntable.too_many_nodes", "left out: {:.2g} nodes",
+                                        "weggelassen: {:.2g} Knoten"};
+constexpr Message<> kOnEdge{"turntable.on_edge", "minimum on the edge", "Minimum am Rand"};
+constexpr Message<std::string_view> kUndetermined{"turntable.undetermined", "not determined: {}", "nicht bestimmt: {}"};
+constexpr Message<> kUnconverged{"turntable.unconverged", "no convergence", "keine Konvergenz"};
 
 constexpr double kGridSteps[] = {1, 0.1, 0.01};  // mm: the published one, and what finer ones bring
 constexpr double kMostNodes = 1e8;               // about a minute
@@ -19,7 +32,7 @@ std::vector<double> Values(const System& system) {
 }
 
 struct MethodResult {
-  std::string method, note;
+  Sentence method, note;
   std::vector<double> values;           // mm, rad; empty: left out
   std::array<double, kParameters> u{};  // 0: none
   std::optional<double> quantisation;   // of a grid: step / sqrt(12), mm
@@ -97,8 +110,7 @@ std::optional<double> HeldOutRms(const std::vector<Placement>& placements, const
 
 MethodResult GridRow(const Scanner& scanner, const Start& start, double step, PlaneFit kind,
                      const CompareChoice& choice) {
-  const std::string name =
-      fmt::format("grid, {}, step {:g}", kind == PlaneFit::kVertical ? "as published" : "orthogonal", step);
+  const Sentence name = Say(kGrid, Say(kind == PlaneFit::kVertical ? kAsPublished : kOrthogonalFit), step);
   GridBox box = scanner.Box();
   box.step = step;
   MethodResult row;
@@ -108,7 +120,7 @@ MethodResult GridRow(const Scanner& scanner, const Start& start, double step, Pl
   row.effort = static_cast<double>(rows) * static_cast<double>(columns);
   const double most = choice.brief ? kFewPlanes / static_cast<double>(start.storeys.size()) : kMostNodes;
   if (row.effort > most) {
-    row.note = fmt::format("left out: {:.2g} nodes", row.effort);
+    row.note = Say(kTooManyNodes, row.effort);
     return row;
   }
   const Stopwatch watch;
@@ -120,7 +132,7 @@ MethodResult GridRow(const Scanner& scanner, const Start& start, double step, Pl
   row.values = Values(best);
   row.S = grid.best.value;
   row.rms = FlatnessOf(scanner.placements(), best, kind).rms;
-  if (grid.best.on_edge) row.note = "minimum on the edge";
+  if (grid.best.on_edge) row.note = Say(kOnEdge);
   std::vector<System> without;
   for (const GridNode& node : grid.without) without.push_back(with(node));
   row.held_out_rms = HeldOutRms(scanner.placements(), without);
@@ -140,7 +152,7 @@ bool HoldsOut(const std::vector<Placement>& placements, const CompareChoice& cho
   return placements.size() > 1 && (!choice.brief || refitted <= kFewLeftOut);
 }
 
-MethodResult JointRow(const Scanner& scanner, const Start& start, const std::string& name, Model::Residuals residuals,
+MethodResult JointRow(const Scanner& scanner, const Start& start, const Sentence& name, Model::Residuals residuals,
                       bool weighted, const std::vector<int>& estimate, const CompareChoice& choice) {
   const Stopwatch watch;
   JointFit fit = scanner.Fit(start.system, residuals, estimate);
@@ -153,7 +165,7 @@ MethodResult JointRow(const Scanner& scanner, const Start& start, const std::str
   const System found = fit.Found();
   row.values = Values(found);
   if (!determined) {
-    row.note = "not determined: " + fit.solution.observability.undetermined.front();
+    row.note = Say(kUndetermined, fit.solution.observability.undetermined.front());
   } else {
     const Problem& problem = fit.solution.problem;
     const Headline headline = HeadlineOf(fit.solution, ClusteredCovariance(problem, fit.solution.linear));
@@ -162,7 +174,7 @@ MethodResult JointRow(const Scanner& scanner, const Start& start, const std::str
       if (k <= Model::kTiltY) row.u[static_cast<size_t>(k)] = std::sqrt(headline.covariance(e, e));
       ++e;
     }
-    if (!fit.solution.fit.converged) row.note = "no convergence";
+    if (!fit.solution.fit.converged) row.note = Say(kUnconverged);
   }
   const Flatness flatness = FlatnessOf(scanner.placements(), found, PlaneFit::kOrthogonal);
   row.S = flatness.S;
@@ -182,11 +194,10 @@ Result<Comparison> Scanner::Compare(const CompareChoice& choice) const {
   for (const PlaneFit kind : {PlaneFit::kVertical, PlaneFit::kOrthogonal})
     for (const double step : kGridSteps) results.push_back(GridRow(*this, start, step, kind, choice));
   using enum Model::Residuals;
-  results.push_back(JointRow(*this, start, "joint, point to plane", kPlane, false, {}, choice));
-  results.push_back(JointRow(*this, start, "joint, depth", kDepth, false, {}, choice));
-  results.push_back(
-      JointRow(*this, start, "joint, depth, weighted, tilts", kDepth, true, {Model::kTiltX, Model::kTiltY}, choice));
-  results.push_back(JointRow(*this, start, "joint, depth, weighted", kDepth, true, {}, choice));
+  results.push_back(JointRow(*this, start, Say(kJointPlane), kPlane, false, {}, choice));
+  results.push_back(JointRow(*this, start, Say(kJointDepth), kDepth, false, {}, choice));
+  results.push_back(JointRow(*this, start, Say(kJointTilts), kDepth, true, {Model::kTiltX, Model::kTiltY}, choice));
+  results.push_back(JointRow(*this, start, Say(kJointWeighted), kDepth, true, {}, choice));
   return Tabulate(results);
 }
 

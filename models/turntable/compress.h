@@ -67,7 +67,7 @@ struct Placement {
   double largest = 0;                       // |coordinate|, mm, over all kept points
   LagSums lag_sums;                         // of the residuals from each profile's own line, with three points or more
   ResidualHistogram histogram;              // of the same, by their pooled standard deviation
-  std::string warning;                      // of reading; empty: none
+  Sentence warning;                         // of reading; empty: none
   double Points() const;
   double Sweep() const;    // largest minus smallest angle, rad
   PureError Pure() const;  // of all profiles

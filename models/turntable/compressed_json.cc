@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include "io/input_file.h"
+#include "models/scanner.h"
 #include "models/turntable/compress.h"
 
 namespace scancal::turntable {
@@ -122,13 +123,14 @@ std::optional<Placement> ReadTarget(const Json& json) {
   if (!json.is_object()) return std::nullopt;
   for (const char* key : {"name", "missing", "set_aside", "largest", "lidar", "profiles", "warning"})
     if (!json.contains(key)) return std::nullopt;
-  if (!json["name"].is_string() || !json["warning"].is_string() || !json["lidar"].is_boolean() ||
-      !json["largest"].is_number() || !IsCount(json["missing"]) || !IsCount(json["profiles"]) ||
-      json["profiles"] == 0 || !json["set_aside"].is_object())
+  const std::optional<Sentence> warning = SentenceFromJson(json["warning"]);
+  if (!json["name"].is_string() || !warning || !json["lidar"].is_boolean() || !json["largest"].is_number() ||
+      !IsCount(json["missing"]) || !IsCount(json["profiles"]) || json["profiles"] == 0 ||
+      !json["set_aside"].is_object())
     return std::nullopt;
   Placement placement;
   placement.name = json["name"];
-  placement.warning = json["warning"];
+  placement.warning = *warning;
   placement.missing = json["missing"];
   placement.largest = json["largest"];
   for (const auto& [reason, count] : json["set_aside"].items()) {
@@ -152,7 +154,7 @@ Result<Json> PlacementsToJson(const std::vector<Placement>& placements) {
                        {"largest", placement.largest},
                        {"lidar", placement.IsLidar()},
                        {"profiles", placement.profiles.size()},
-                       {"warning", placement.warning}});
+                       {"warning", ToJson(placement.warning)}});
     Write(placement, &numbers);
   }
   const std::string segments = ToBase64(numbers.bytes());

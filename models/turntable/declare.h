@@ -7,6 +7,7 @@
 #include "io/scan.h"
 #include "models/turntable.h"
 #include "solver/grid_search.h"
+#include "solver/sentence.h"
 
 namespace scancal::turntable {
 
@@ -29,7 +30,7 @@ struct Declaration {
   GridBox search;    // of M and N, mm
   std::vector<ScanDeclaration> scans;
   std::optional<double> line_correlation;  // points; declared
-  std::vector<std::string> warnings;       // worth knowing
+  std::vector<Sentence> warnings;          // worth knowing
 };
 
 // Takes every key of the data set; role, value and u of `model`'s quantities are set from parameters and influences. An

@@ -9,10 +9,43 @@
 namespace scancal::turntable {
 namespace {
 
+constexpr Message<Sentence, std::string_view, double> kAddPlacement{
+    "turntable.add_placement",
+    "{}; {} suffers most (u = {:.2g} mm); add a placement with the plate turned about the vertical by 20 deg or more "
+    "against the others",
+    "{}; am meisten leidet {} (u = {:.2g} mm). Eine Aufstellung ergänzen, bei der die Platte gegen die übrigen um 20° "
+    "oder mehr um die Senkrechte gedreht ist"};
+constexpr Message<> kOnePlacement{"turntable.one_placement", "there is only one placement of the plate",
+                                  "Es gibt nur eine Aufstellung der Platte"};
+constexpr Message<double> kNormalsAlike{"turntable.normals_alike",
+                                        "the normals of all placements lie within {:.2g} deg",
+                                        "Die Normalen aller Aufstellungen liegen innerhalb von {:.2g}°"};
+constexpr Message<double, double> kMinimumOnEdge{
+    "turntable.minimum_on_edge",
+    "the grid minimum M = {:g}, N = {:g} mm lies on the edge of the search interval; widen search in dataset.yaml",
+    "Das Minimum der Gittersuche M = {:g} mm, N = {:g} mm liegt am Rand des Suchbereichs; search in dataset.yaml "
+    "erweitern"};
+constexpr Message<std::string_view, double> kMinimumApart{
+    "turntable.minimum_apart",
+    "{}: the grid minimum lies {:.3g} mm from the refined value, more than step and u explain: the noise pulls the "
+    "search away, or the model lacks something",
+    "{}: Das Minimum der Gittersuche liegt {:.3g} mm neben dem verfeinerten Wert, mehr, als Schrittweite und u "
+    "erklären: Das Rauschen zieht die Suche weg, oder dem Modell fehlt etwas"};
+constexpr Message<std::string_view, double> kOutsideSearch{
+    "turntable.outside_search",
+    "{} = {:.6g} mm lies outside the search interval; widen search in dataset.yaml, or look at the scans",
+    "{} = {:.6g} mm liegt außerhalb des Suchbereichs; search in dataset.yaml erweitern oder die Scans ansehen"};
+constexpr Message<double> kNarrowSweep{
+    "turntable.narrow_sweep",
+    "the sweep of {:.2g} deg is too narrow to tell M and N well: a wider one is the cheapest gain; if the file holds "
+    "radians, declare angle: rad",
+    "Der Drehbereich von {:.2g}° ist zu eng, um M und N gut zu bestimmen: Ein weiterer ist der billigste Gewinn; "
+    "stehen in der Datei Radiant, so ist angle: rad anzugeben"};
+
 constexpr double kImplausibleLength_mm = 50e3;  // no plate is seen from farther away
 constexpr double kPerpendicular = 1 * kDegree;  // a plate's normal nearer to the axis tells nothing of M and N
 constexpr double kApart = 5 * kDegree;          // two placements are different
-constexpr double kNarrowSweep = 5 * kDegree;
+constexpr double kNarrow = 5 * kDegree;
 constexpr double kFarFromGrid = 5;  // of step and u
 constexpr double kEdgeOn = 0.02;    // cosine of the incidence
 
@@ -49,32 +82,19 @@ void JudgeOrientations(const JointFit& fit, Calibration* calibration) {
   const double angle = LargestAngle(fit);
   const Parameter* worst = LeastKnownLength(*calibration);
   if (angle >= kApart || !worst) return;
-  const std::string which = fit.targets.size() == 1
-                                ? "there is only one placement of the plate"
-                                : fmt::format("the normals of all placements lie within {:.2g} deg", angle / kDegree);
-  calibration->unreliable.push_back(
-      which + "; " + worst->name + fmt::format(" suffers most (u = {:.2g} mm); ", worst->u) +
-      "add a placement with the plate turned about the vertical by 20 deg or more against the others");
+  const Sentence which = fit.targets.size() == 1 ? Say(kOnePlacement) : Say(kNormalsAlike, angle / kDegree);
+  calibration->unreliable.push_back(Say(kAddPlacement, which, worst->name, worst->u));
 }
 
 void JudgeSearch(const GridBox& box, const GridNode& least, Calibration* calibration) {
-  if (least.on_edge)
-    calibration->unreliable.push_back(
-        fmt::format("the grid minimum M = {:g}, N = {:g} mm lies on the edge of the search interval; "
-                    "widen search in dataset.yaml",
-                    least.at[0], least.at[1]));
+  if (least.on_edge) calibration->unreliable.push_back(Say(kMinimumOnEdge, least.at[0], least.at[1]));
   for (const size_t k : {0, 1}) {
     const Parameter* p = calibration->Find(k == 0 ? "M" : "N");
     const double apart = std::abs(p->value - least.at[k]);
     if (p->role == Role::kEstimate && !least.on_edge && apart > kFarFromGrid * (box.step + p->u))
-      calibration->unreliable.push_back(
-          fmt::format("{}: the grid minimum lies {:.3g} mm from the refined value, more than step and u explain: the "
-                      "noise pulls the search away, or the model lacks something",
-                      p->name, apart));
+      calibration->unreliable.push_back(Say(kMinimumApart, p->name, apart));
     if (p->role == Role::kEstimate && (p->value < box.lower[k] || p->value > box.upper[k]) && !least.on_edge)
-      calibration->unreliable.push_back(fmt::format(
-          "{} = {:.6g} mm lies outside the search interval; widen search in dataset.yaml, or look at the scans",
-          p->name, p->value));
+      calibration->unreliable.push_back(Say(kOutsideSearch, p->name, p->value));
   }
 }
 
@@ -156,11 +176,7 @@ void Judge(const GridBox& box, const std::vector<Placement>& placements, const G
   JudgeOrientations(fit, calibration);
   double widest = 0;
   for (const Placement& placement : placements) widest = std::max(widest, placement.Sweep());
-  if (widest < kNarrowSweep)
-    calibration->warnings.push_back(
-        fmt::format("the sweep of {:.2g} deg is too narrow to tell M and N well: a wider one is the cheapest gain; if "
-                    "the file holds radians, declare angle: rad",
-                    widest / kDegree));
+  if (widest < kNarrow) calibration->warnings.push_back(Say(kNarrowSweep, widest / kDegree));
 }
 
 }  // namespace scancal::turntable

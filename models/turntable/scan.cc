@@ -12,6 +12,13 @@
 namespace scancal::turntable {
 namespace {
 
+constexpr Message<std::string_view> kLooksShuffled{
+    "turntable.looks_shuffled",
+    "target {}: most profiles hold one point and their angles recur; if the points are not in the order of the "
+    "profiles, add a column profile, or u is too small",
+    "Prüfkörper {}: Die meisten Profile haben nur einen Punkt, und ihre Winkel kehren wieder; stehen die Punkte nicht "
+    "in der Reihenfolge der Profile, so ist eine Spalte profile zu ergänzen, sonst ist u zu klein"};
+
 // Which rows of the batch every interval of `keep` keeps; y and z may be derived from bearing and range.
 Result<std::vector<char>> Kept(const ScanDeclaration& scan, const ScanBatch& batch, const SensorColumns& points) {
   std::vector<char> kept(batch.size(), 1);
@@ -139,13 +146,10 @@ Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense) {
     progress.Show(static_cast<double>(reader->bytes_read()) /
                   static_cast<double>(std::max<int64_t>(1, reader->bytes_total())));
   }
-  RawScan result{scan.name, gatherer.Take(), static_cast<double>(reader->missing()), 0, ""};
+  RawScan result{scan.name, gatherer.Take(), static_cast<double>(reader->missing()), 0, {}};
   if (result.profiles.empty())
     return Error{scan.format.path.string() + ": target " + scan.name + ": no point is left; widen its keep: intervals"};
-  if (!gatherer.by_key() && LooksShuffled(result.profiles))
-    result.warning = "target " + scan.name +
-                     ": most profiles hold one point and their angles recur; if the points are not in the order of the "
-                     "profiles, add a column profile, or u is too small";
+  if (!gatherer.by_key() && LooksShuffled(result.profiles)) result.warning = Say(kLooksShuffled, scan.name);
   return result;
 }
 

@@ -21,7 +21,7 @@ struct RawScan {
   std::vector<RawProfile> profiles;  // in the order of their keys
   double missing = 0;                // no return
   double off_line = 0;               // removed by Clean: off the line of their profile
-  std::string warning;               // empty: none
+  Sentence warning;                  // empty: none
 };
 
 // Reads the points that `keep` keeps. With a column `profile` its values group the points, in any order; without it a

@@ -9,6 +9,11 @@
 namespace scancal::turntable {
 namespace {
 
+constexpr Message<> kPlaneIsBiased{
+    "turntable.plane_is_biased",
+    "point-to-plane residuals are biased by the noise along depth; the depth residual is not",
+    "Residuen als Abstand Punkt–Ebene werden durch das Rauschen längs der Tiefe systematisch verfälscht, "
+    "Tiefenresiduen nicht"};
 const char kSearching[] = "searching M, N";
 constexpr int kRoundsOfReading = 4;
 constexpr double kNodesOfReading = 60;  // a side
@@ -133,9 +138,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
     const auto [normal, distance] = fit.Plane(t);
     target.geometry = {{"normal", {normal[0], normal[1], normal[2]}}, {"distance", {distance}}};
   }
-  if (plane)
-    result.warnings.push_back(
-        "point-to-plane residuals are biased by the noise along depth; the depth residual is not");
+  if (plane) result.warnings.push_back(Say(kPlaneIsBiased));
   Judge(box, placements_, SearchKnowing(found, start), fit, &result);
   AddVolume(placements_, &result);
   AddSurface(box, start.storeys, StoreysOf(placements_, found), &result);

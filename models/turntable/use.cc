@@ -37,7 +37,7 @@ std::vector<std::vector<double>> GridOver(const ScannedVolume& volume) {
 
 double UOfSource(const Calibration& calibration, const std::string& source) {
   for (const BudgetLine& line : calibration.budget)
-    if (line.source == source) return line.u;
+    if (line.source.english == source) return line.u;
   return 0;
 }
 

@@ -33,7 +33,7 @@ def main(given: list[str] | None = None) -> int:
         previous = read_calibration(choice.previous) if choice.previous else None
         for each in filter(None, [calibration, previous]):
             consistency.check(each)
-        language = Language(choice.language)
+        language = Language(choice.language, calibration, previous)
         if choice.out or choice.pdf:
             from page import render_page  # Matplotlib takes half a second, and a certificate needs none
             html = render_page(calibration, previous, language)

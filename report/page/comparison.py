@@ -24,7 +24,7 @@ def methods(c: Calibration) -> list[dict]:
     for name in "MN":
         apart = (grid[name] - value(rows[-1], f"{name}/mm")) / u(rows[-1], f"{name}/mm")
         cells[f"Δ{name}/u"] = apart if math.isfinite(apart) else None
-    own = {"method": f"grid, orthogonal, step {grid['step']:g}",
+    own = {"search": f"{grid['step']:g}",
            "cells": [{"column": column, "value": number, "u": None} for column, number in cells.items()]}
     return [own, *rows]
 
@@ -59,4 +59,4 @@ def column_title(column: str, t) -> str:
 
 def method_name(row: dict, t) -> str:
     """In the language of the report."""
-    return t.translated(row["method"])[0]
+    return t("comparison.search", step=t.number(row["search"])) if "search" in row else t.translated(row["method"])[0]

@@ -46,7 +46,7 @@ def _fitted(c: Calibration, t: Language) -> str:
     many = t("procedure.many_names", count=len(names))
     weights = t("procedure.weights_equal" if has_equal_weights(c) else "procedure.weights_estimated")
     return t(f"procedure.{c['model']}.fitted", names=", ".join(names) if len(names) <= FEW_NAMES else many,
-             residual=t.translated(str(c.get("residual") or "–"))[0], weights=weights,
+             residual=t.named("procedure.residual", str(c.get("residual") or "–")), weights=weights,
              iterations=c.get("iterations") or "–", start=_start(c, t))
 
 

@@ -1,5 +1,4 @@
 #include "solver/uncertainty/resampling.h"
-#include <fmt/format.h>
 #include <glog/logging.h>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,18 @@
 
 namespace scancal {
 namespace {
+
+constexpr Message<double, double> kTrialsUnsettled{
+    "solver.trials_unsettled", "Monte Carlo: {} of {} trials did not settle and are left out",
+    "Monte-Carlo-Simulation: {} von {} Versuchen liefen nicht ein und sind weggelassen"};
+constexpr Message<std::string_view, Sentence> kIntervalsDiffer{
+    "solver.intervals_differ",
+    "{}: value +- U and the 95 % interval of Monte Carlo differ in the {} digit of u: not all that u holds was drawn, "
+    "or the estimate is far from linear or normal",
+    "{}: Wert ± U und das 95-%-Intervall der Monte-Carlo-Simulation unterscheiden sich in der {} Ziffer von u: Nicht "
+    "alles, was u enthält, wurde gezogen, oder die Schätzung ist weit von linear oder normalverteilt entfernt"};
+constexpr Message<> kFirstDigit{"solver.first_digit", "first", "ersten"};
+constexpr Message<> kSecondDigit{"solver.second_digit", "second", "zweiten"};
 
 bool IsRegular(const Eigen::Ref<const Eigen::MatrixXd>& triangle) {
   return (triangle.diagonal().array().abs() > kRankTolerance * triangle.colwise().norm().transpose().array()).all();
@@ -124,18 +135,14 @@ void AddMonteCarlo(const Solution& solution, const VarianceDof& variance_dof, co
   summary.digits = choice.digits;
   const AdaptiveSample sample = Sample(solution, variance_dof, choice, progress, gum, &summary);
   summary.stable = sample.stable;
-  if (summary.failed > 0)
-    result->warnings.push_back(
-        fmt::format("Monte Carlo: {} of {} trials did not settle and are left out", summary.failed, summary.trials));
+  if (summary.failed > 0) result->warnings.push_back(Say(kTrialsUnsettled, summary.failed, summary.trials));
   if (sample.trials.rows() < kFewestTrials) return;
   for (size_t k = 0; k < estimated.size(); ++k) {
     const std::span<const double> trials(sample.trials.col(static_cast<Eigen::Index>(k)).data(), sample.trials.rows());
     summary.parameters.push_back(Compared(trials, *estimated[k], choice.digits, sample.stable));
     if (summary.parameters.back().verdict == Name(Verdict::kFail))
-      result->warnings.push_back(fmt::format(
-          "{}: value +- U and the 95 % interval of Monte Carlo differ in the {} digit of u: not all that u holds was "
-          "drawn, or the estimate is far from linear or normal",
-          estimated[k]->name, choice.digits == 1 ? "first" : "second"));
+      result->warnings.push_back(
+          Say(kIntervalsDiffer, estimated[k]->name, Say(choice.digits == 1 ? kFirstDigit : kSecondDigit)));
   }
 }
 

@@ -128,6 +128,7 @@ TEST_F(RecomputeTest, WarningsOfReadingRemain) {
   ASSERT_NE(outcome.exit_code, 1) << outcome.err;
   const Json old = Old(data, outcome.exit_code);
   EXPECT_THAT(Sentences(old, "warnings"), HasSubstr("add a column profile"));
+  EXPECT_THAT(old["messages"].dump(), HasSubstr("eine Spalte profile"));
   ExpectSame(old, Refined(old_, outcome.exit_code));
 }
 

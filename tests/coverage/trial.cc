@@ -65,8 +65,8 @@ Trial Try(const Row& row, const Oracle& oracle, uint64_t seed) {
   trial.U = {M.U, N.U};
   trial.U_naive = k * Eigen::Vector2d(M.u_naive, N.u_naive);
   trial.U_clustered = k * Eigen::Vector2d(M.u_clustered, N.u_clustered);
-  trial.unreliable = result->unreliable;
-  trial.warnings = result->warnings;
+  trial.unreliable.assign(result->unreliable.begin(), result->unreliable.end());
+  trial.warnings.assign(result->warnings.begin(), result->warnings.end());
   return trial;
 }
 

@@ -76,7 +76,7 @@ TEST(CalibrationJsonTest, UncertaintiesComeBack) {
 
 TEST(CalibrationJsonTest, WhatWasNotFiniteComesBackAsNoNumber) {
   Calibration before = WithBudgetAndVolume();
-  before.unreliable = {"the uncertainties overflow"};
+  before.unreliable = {Sentence{"the uncertainties overflow"}};
   before.covariance(0, 1) = before.parameters[0].dof = before.volume.rows[1].back() = INFINITY;
   const auto after = CalibrationFromJson(ToJson(before), "f");
   ASSERT_TRUE(after.ok()) << after.error().message;
@@ -134,12 +134,32 @@ TEST(CalibrationJsonTest, UncertaintiesThatCannotBeAreErrors) {
 
 TEST(CalibrationJsonTest, AnUnreliableOneStaysUnreliable) {
   Calibration c = SomeCalibration();
-  c.unreliable = {"the grid minimum lies on the edge"};
+  c.unreliable = {Sentence{"the grid minimum lies on the edge"}};
   const Json json = ToJson(c);
   EXPECT_EQ(json["status"], "unreliable");
   const auto after = CalibrationFromJson(json, "f");
   ASSERT_TRUE(after.ok());
   EXPECT_FALSE(after->ok());
+}
+
+TEST(CalibrationJsonTest, WhatIsSaidInOtherLanguages) {
+  Calibration c = SomeCalibration();
+  c.warnings = {Sentence{"one", "eins", "some.one"}, Sentence{"words of others"}, Sentence{"one", "eins", "some.one"}};
+  c.unreliable = {Sentence{"two", "zwei", "some.two"}};
+  c.budget[0].source = {"three", "drei", "some.three"};
+  Comparison comparison;
+  comparison.rows = {{{"four", "vier", "some.four"}, {}, {"five", "fünf", "some.five"}}};
+  const Json json = ToJson(c, {.comparison = comparison});
+  EXPECT_EQ(json["warnings"], Json({"one", "words of others", "one"}));
+  EXPECT_EQ(json["unreliable"], Json::array({"two"}));
+  EXPECT_EQ(json["budget"][0]["source"], "three");
+  EXPECT_EQ(json["compare"][0]["method"], "four");
+  EXPECT_EQ(json["compare"][0]["note"], "five");
+  EXPECT_EQ(json["messages"], Json::parse(R"([{"id": "some.two", "en": "two", "de": "zwei"},
+                                              {"id": "some.one", "en": "one", "de": "eins"},
+                                              {"id": "some.three", "en": "three", "de": "drei"},
+                                              {"id": "some.four", "en": "four", "de": "vier"},
+                                              {"id": "some.five", "en": "five", "de": "fünf"}])"));
 }
 
 TEST(CalibrationJsonTest, ResidualsAlongTheViews) {

@@ -26,7 +26,7 @@ Calibration WithFigures() {
   c.parameters[1].dof = 10;
   c.influences = {{"noise_y", Unit::kMm, Scope::kPoint, Role::kEstimate, 0.05},
                   {"tilt_x", Unit::kRad, Scope::kSystem, Role::kHold, 0}};
-  c.check = {{"1 to 2", "1 to 3"}, {0.5, -1}, {0.1, 0.2}, {0.001, 0}};
+  c.check = {{Sentence{"1 to 2"}, Sentence{"1 to 3"}}, {0.5, -1}, {0.1, 0.2}, {0.001, 0}};
   c.surface = {{"near", SomeTable()}, {"search", SomeTable()}};
   c.targets.resize(2);
   c.targets[0].name = "left";
@@ -77,9 +77,9 @@ TEST(FiguresJsonTest, WhatWasKnownBefore) {
 
 TEST(FiguresJsonTest, AComparisonWithoutItsComputingTimes) {
   const Comparison comparison = {{{"M/mm", 6}, {"seconds", 2, true}, {"S/um"}},
-                                 {{"grid", {{123.0, 0}, {0.7, 0}, {std::nullopt, 0}}, "minimum on the edge"},
-                                  {"joint", {{123.4, 0.1}, {0.1, 0}, {INFINITY, 0}}, ""},
-                                  {"none", {}, "left out"}}};
+                                 {{{"grid"}, {{123.0, 0}, {0.7, 0}, {std::nullopt, 0}}, {"minimum on the edge"}},
+                                  {{"joint"}, {{123.4, 0.1}, {0.1, 0}, {INFINITY, 0}}, {}},
+                                  {{"none"}, {}, {"left out"}}}};
   EXPECT_EQ(ToJson(Calibration(), {.comparison = comparison})["compare"], Json::parse(R"([
       {"method": "grid", "note": "minimum on the edge",
        "cells": [{"column": "M/mm", "value": 123.0, "u": null}, {"column": "S/um", "value": null, "u": null}]},

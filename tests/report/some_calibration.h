@@ -48,8 +48,8 @@ inline Calibration SomeCalibration() {
 
 inline Calibration WithBudgetAndVolume() {
   Calibration c = SomeCalibration();
-  c.budget = {{"encoder_jitter", 'A', Unit::kRad, 2e-5, {}, {0.01, 0.015}, {0.8, 0.6}, 100},
-              {"tilt_x", 'B', Unit::kRad, 2e-4, {3.5, -1.25}, {7e-4, 2.5e-4}, {0.2, 0.4}, INFINITY}};
+  c.budget = {{{"encoder_jitter"}, 'A', Unit::kRad, 2e-5, {}, {0.01, 0.015}, {0.8, 0.6}, 100},
+              {{"tilt_x"}, 'B', Unit::kRad, 2e-4, {3.5, -1.25}, {7e-4, 2.5e-4}, {0.2, 0.4}, INFINITY}};
   c.volume = {{"alpha", "y", "X", "Y", "Z", "U_x", "U_y", "U_z", "U_max"},
               {Unit::kRad, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm, Unit::kMm},
               {{-0.25, 40, 1, 2, 3, 0.01, 0.02, 0.03, 0.031}, {0.25, 160, 4, 5, 6, 0.1, 0.2, 0.3, 0.312}},

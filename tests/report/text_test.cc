@@ -27,7 +27,7 @@ TEST(TextTest, TheMonteCarloStandsBesideValueAndU) {
 
 TEST(TextTest, TheReportNamesEverythingThatMatters) {
   Calibration c = SomeCalibration();
-  c.warnings = {"a first warning", "a second"};
+  c.warnings = {Sentence{"a first warning"}, Sentence{"a second"}};
   const std::string text = ToText(c);
   EXPECT_THAT(text, AllOf(HasSubstr("123.002(11)"), HasSubstr("409.100(20)"), HasSubstr("considered"),
                           HasSubstr("set aside: left: 2 points off the line"),
@@ -50,20 +50,20 @@ TEST(TextTest, OneLineSumsUpTheVolume) {
 
 TEST(TextTest, DeclaredInfluencesDropTheFootnote) {
   Calibration c = SomeCalibration();
-  c.budget.push_back({"scale_y", 'B', Unit::kOne, 1e-4, {}, {0.001, 0.002}, {0.01, 0.01}, 1e9});
+  c.budget.push_back({{"scale_y"}, 'B', Unit::kOne, 1e-4, {}, {0.001, 0.002}, {0.01, 0.01}, 1e9});
   EXPECT_THAT(ToText(c), Not(HasSubstr("traceable")));
 }
 
 TEST(TextTest, TheReasonsOfAnUnreliableResultComeLast) {
   Calibration c = SomeCalibration();
-  c.unreliable = {"the refinement did not converge"};
+  c.unreliable = {Sentence{"the refinement did not converge"}};
   EXPECT_THAT(ToText(c), HasSubstr("unreliable: the refinement did not converge\nstatus: unreliable\n"));
 }
 
 TEST(TextTest, ARowThatWasLeftOutIsExplained) {
   Comparison comparison{{{"M/mm", 6}, {"N/mm", 6}, {"s", 2}}, {}};
-  comparison.rows.push_back({"grid, step 0.001", {}, "left out: 1e+09 nodes"});
-  comparison.rows.push_back({"joint, depth", {{123.0021, 0.011}, {409.1, 0.02}, {std::nullopt}}, ""});
+  comparison.rows.push_back({{"grid, step 0.001"}, {}, {"left out: 1e+09 nodes"}});
+  comparison.rows.push_back({{"joint, depth"}, {{123.0021, 0.011}, {409.1, 0.02}, {std::nullopt}}, {}});
   const std::string text = ToText(comparison);
   EXPECT_THAT(text, AllOf(HasSubstr("grid, step 0.001: left out: 1e+09 nodes\n"), HasSubstr("123.002(11)"),
                           HasSubstr("409.100(20)"), HasSubstr("M/mm")));

@@ -24,8 +24,9 @@ TEST(Judge, NamesAPriorThatTheDataContradict) {
   LineModel model;
   model.quantity(LineModel::kSlope).value = 1;  // the data say 0.3(0.01)
   model.quantity(LineModel::kSlope).u = 0.01;
-  EXPECT_THAT(Calibrated(LineScene().Make(), model).unreliable,
-              ElementsAre(HasSubstr("slope: its prior and the data disagree")));
+  const std::vector<Sentence> doubts = Calibrated(LineScene().Make(), model).unreliable;
+  EXPECT_THAT(doubts, ElementsAre(HasSubstr("slope: its prior and the data disagree")));
+  EXPECT_THAT(doubts[0].german, HasSubstr("slope: Vorwissen und Daten widersprechen einander"));
   model.quantity(LineModel::kSlope).value = 0.3;
   EXPECT_THAT(Calibrated(LineScene().Make(), model).unreliable, IsEmpty());
 }

@@ -30,12 +30,12 @@ Calibration SomeCalibration() {
   const Eigen::Matrix2d own{{0.09, -0.02}, {-0.02, 0.04}};
   c.covariance = own + kUOfG * kUOfG * kOfG * kOfG.transpose();
   c.budget.resize(3);
-  c.budget[0].source = "noise";
+  c.budget[0].source.english = "noise";
   c.budget[0].u = 0.05;
-  c.budget[1].source = "g";
+  c.budget[1].source.english = "g";
   c.budget[1].u = kUOfG;
   c.budget[1].sensitivity = {kOfG[0], kOfG[1]};
-  c.budget[2].source = "h";
+  c.budget[2].source.english = "h";
   c.budget[2].u = 0.1;
   return c;
 }

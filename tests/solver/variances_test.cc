@@ -124,7 +124,7 @@ TEST(Variances, DeclaredOnesAreKeptUnlessTheResidualsShowMore) {
   EXPECT_EQ(careless.variances->exceeded[0].estimated, careless.problem.quantities[LineModel::kShift].u);
   const Calibration result = Summarize(careless, {});
   ASSERT_EQ(result.warnings.size(), 1U);
-  EXPECT_NE(result.warnings[0].find("shift: declared with u = 0.05"), std::string::npos) << result.warnings[0];
+  EXPECT_EQ(result.warnings[0].english.find("shift: declared with u = 0.05"), 0U) << result.warnings[0];
 }
 
 TEST(Variances, AllDeclaredMeansInfiniteDegreesOfFreedom) {

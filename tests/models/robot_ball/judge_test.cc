@@ -14,14 +14,14 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 // The doubts about these data, checked against `before`.
-std::vector<std::string> Doubts(const Measurements& data, const std::vector<double>& before) {
+std::vector<Sentence> Doubts(const Measurements& data, const std::vector<double>& before) {
   const Result<Kinematics> start = InitialHandEye(data);
   const Result<JointFit> fit = FitJointly(data, Model(data.links, data.spheres), start->flange_from_scanner);
   EXPECT_TRUE(fit.ok()) << fit.error().message;
   Calibration calibration;
   calibration.check.before = before;
   calibration.check.after = SpacingErrors(data, fit->Found());
-  for (const CheckLength& length : data.check) calibration.check.names.push_back(length.name);
+  for (const CheckLength& length : data.check) calibration.check.names.push_back({length.name});
   Judge(data, *fit, &calibration);
   return calibration.unreliable;
 }

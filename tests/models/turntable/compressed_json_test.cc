@@ -23,7 +23,7 @@ std::vector<Placement> Placements(bool lidar) {
     scan.name = simulated.name;
     scan.missing = 3;
     scan.off_line = 5;
-    scan.warning = "a warning \"with\" quotes";
+    scan.warning = {"a warning \"with\" quotes", lidar ? "eine Warnung" : "", lidar ? "some.warning" : ""};
     for (const SimulatedProfile& profile : simulated.profiles) {
       RawProfile& raw = scan.profiles.emplace_back();
       raw.alpha = profile.alpha;
@@ -79,6 +79,13 @@ TEST(CompressedData, ComeBackToTheLastBit) {
   }
 }
 
+TEST(CompressedData, AWarningOfAnOldFileIsEnglishAlone) {
+  Json json = *PlacementsToJson(Placements(true));
+  EXPECT_EQ(json["targets"][0]["warning"]["de"], "eine Warnung");
+  json["targets"][0]["warning"] = "an old warning";
+  EXPECT_EQ((*PlacementsFromJson(json, "f"))[0].warning, Sentence{"an old warning"});
+}
+
 // Numbers that carry their right hash, yet cannot be: nothing but the program's own check is left.
 TEST(CompressedData, NumbersThatCannotBeAreRefused) {
   const Json sound = *PlacementsToJson(Placements(false));
@@ -103,9 +110,10 @@ TEST(CompressedData, NumbersThatCannotBeAreRefused) {
 
 TEST(CompressedData, TargetsThatCannotBeAreRefused) {
   const Json sound = *PlacementsToJson(Placements(false));
-  for (const char* patch : {R"({"name": 5})", R"({"missing": -1})", R"({"missing": 1.5})", R"({"set_aside": []})",
-                            R"({"set_aside": {"off": "many"}})", R"({"largest": null})", R"({"lidar": 0})",
-                            R"({"profiles": 0})", R"({"profiles": "7"})", R"({"warning": null})"}) {
+  for (const char* patch :
+       {R"({"name": 5})", R"({"missing": -1})", R"({"missing": 1.5})", R"({"set_aside": []})",
+        R"({"set_aside": {"off": "many"}})", R"({"largest": null})", R"({"lidar": 0})", R"({"profiles": 0})",
+        R"({"profiles": "7"})", R"({"warning": null})", R"({"warning": {"en": "a"}})"}) {
     Json json = sound;
     json["targets"][1].update(Json::parse(patch));
     const auto placements = PlacementsFromJson(json, "some.json");

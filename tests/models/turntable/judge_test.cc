@@ -96,7 +96,7 @@ class VerdictsTest : public ::testing::Test {
     EXPECT_NEAR(calibration.Find("M")->value, kTruth.M(), 4 * calibration.Find("M")->u);
     EXPECT_NEAR(calibration.Find("N")->value, kTruth.N(), 4 * calibration.Find("N")->u);
   }
-  static std::string Joined(const std::vector<std::string>& sentences) {
+  static std::string Joined(const std::vector<Sentence>& sentences) {
     std::string all;
     for (const std::string& sentence : sentences) all += sentence + "\n";
     return all;

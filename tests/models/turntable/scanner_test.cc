@@ -126,7 +126,7 @@ TEST(TurntableFigures, ABriefComparisonLeavesOutWhatTakesLong) {
   constexpr size_t kHeldOut = 6;
   ASSERT_EQ(few->columns[kHeldOut].name, "held out/um");
   ASSERT_EQ(few->rows.size(), 10U);
-  EXPECT_EQ(few->rows[1].note, "");  // step 0.1: 60,501 nodes
+  EXPECT_EQ(few->rows[1].note.english, "");  // step 0.1: 60,501 nodes
   EXPECT_THAT(few->rows[2].note, ::testing::HasSubstr("left out"));
   EXPECT_THAT(all->rows[1].note, ::testing::HasSubstr("left out"));  // of 48 placements
   EXPECT_TRUE(few->rows.back().cells[kHeldOut].value);

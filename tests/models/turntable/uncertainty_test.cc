@@ -43,7 +43,7 @@ Study Repeat(Scene scene, Model::Residuals residuals, int trials) {
     const Calibration result = Summarize(solution, pure);
     study.lack_of_fit += result.lack_of_fit.F / trials;
     study.warned_of_jackknife += std::any_of(result.warnings.begin(), result.warnings.end(), [](const auto& warning) {
-      return warning.find("leaving one target out") != std::string::npos;
+      return warning.english.find("leaving one target out") != std::string::npos;
     });
   }
   for (Eigen::Vector2d* variance :
@@ -98,7 +98,7 @@ TEST(TurntableUncertainty, TheJackknifeWarnsWhenPlacementsDisagree) {
   const Estimate start = StartNear(problem, scene.system);
   const Calibration result = Summarize(Solve(std::move(problem), start), {});
   ASSERT_FALSE(result.warnings.empty());
-  EXPECT_NE(result.warnings[0].find("N: leaving one target out"), std::string::npos) << result.warnings[0];
+  EXPECT_NE(result.warnings[0].english.find("N: leaving one target out"), std::string::npos) << result.warnings[0];
 }
 
 TEST(TurntableUncertainty, PlainPointToPlaneIsBiasedAndTheDepthResidualIsNot) {

@@ -16,7 +16,7 @@ def certified(**changes) -> Calibration:
 
 
 def written(c: Calibration, language: str = "en") -> str:
-    return dcc.certificate(c, Language(language))
+    return dcc.certificate(c, Language(language, c))
 
 
 def tree(xml: str) -> ElementTree.Element:

@@ -30,6 +30,11 @@ def estimated(name: str, value: float, u: float, unit: str = "mm", **more) -> di
             "u_naive": u / 2, "u_clustered": u, "u_jackknife": None, "u_bootstrap": u} | more
 
 
+def said(english: str, german: str) -> dict:
+    """One of "messages"."""
+    return {"id": "some.message", "en": english, "de": german}
+
+
 def calibration(**changes) -> Calibration:
     """A turntable with a tilt, so that units are mixed; changes replace keys, None removes one."""
     c = Calibration({
@@ -76,5 +81,5 @@ def calibration(**changes) -> Calibration:
 
 def text_of(section: str, c: Calibration, previous: Calibration | None = None, language: str = "en") -> str:
     """What a reader sees of a section, in one line."""
-    body = page.render_section(section, page.environment_of(c, previous, Language(language)))
+    body = page.render_section(section, page.environment_of(c, previous, Language(language, c, previous)))
     return " ".join(html.unescape(re.sub(r"<[^>]*>", " ", body)).split())

@@ -4,7 +4,7 @@ from decimal import Decimal
 
 from certificates import NAMES, certified, texts, tree, written
 import dcc
-from synthetic import calibration
+from synthetic import calibration, said
 
 POWERS = {"mm": -3, "rad": 0, "1": 0}
 
@@ -94,7 +94,9 @@ class ContentTest(unittest.TestCase):
                          ["JCGM 100:2008 (GUM)"])
 
     def test_warnings_are_statements_in_the_language_they_are_in(self):
-        c = certified(warnings=["the variances did not settle; compare u with u clustered", "never heard of"])
+        warning = "the variances did not settle; compare u with u clustered"
+        c = certified(warnings=[warning, "never heard of"],
+                      messages=[said(warning, "Die Varianzen liefen nicht ein; u ist zu vergleichen")])
         statements = tree(written(c, "de")).findall(".//dcc:statement/dcc:declaration/dcc:content", NAMES)
         told = {each.text: each.get("lang") for each in statements}
         self.assertIn(("Die Varianzen liefen nicht ein", "de"),

@@ -6,7 +6,7 @@ from statistics import NormalDist
 import numpy as np
 
 from fit_scenes import METHODS, bowl, normal_counts, row, searched, table, target, turntable_row
-from synthetic import calibration
+from synthetic import calibration, said
 import comparison
 import ellipse
 import figures
@@ -187,7 +187,11 @@ class ComparisonTest(unittest.TestCase):
         self.assertIn("tilt_x / mrad", self.columns(self.tables(tilted)))
 
     def test_a_method_that_was_left_out_is_there_with_its_note(self):
-        found = self.tables(METHODS, DE)
+        left_out = METHODS[1]
+        german = Language("de", calibration(messages=[
+            said(left_out["method"], "Gitter, veröffentlicht, Schritt 0,01"),
+            said(left_out["note"], "weggelassen: 6e+06 Knoten")]))
+        found = self.tables(METHODS, german)
         self.assertEqual(found["tables"][0]["rows"][1],
                          {"method": "Gitter, veröffentlicht, Schritt 0,01", "note": "a", "cells": ["–", "–"]})
         self.assertEqual(found["notes"], [("a", "weggelassen: 6e+06 Knoten")])
@@ -210,7 +214,8 @@ class ComparisonTest(unittest.TestCase):
         rows = [METHODS[0], METHODS[2]]
         grid = {"step": 10.0, "S": 0.05, "nodes": 12, "M": 120.0, "N": 410.0}
         first = comparison.methods(calibration(compare=rows, grid=grid))[0]
-        self.assertEqual(first["method"], "grid, orthogonal, step 10")
+        self.assertEqual(comparison.method_name(first, EN), "grid, orthogonal, step 10")
+        self.assertEqual(comparison.method_name(first, DE), "Gitter, orthogonal, Schritt 10")
         self.assertAlmostEqual(comparison.value(first, "ΔM/u"), (120 - 123.002) / 0.005)
         self.assertEqual(comparison.methods(calibration(compare=rows)), rows)  # its step is among the others
 

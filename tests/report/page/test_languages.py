@@ -1,16 +1,16 @@
-"""Every word is in the texts, in every language alike; every sentence of the program has its German."""
+"""Every word is in the texts, in every language alike; what the program says in a calibration has its German."""
 import ast
 import html
+import json
 import re
 import string
-import tempfile
 import tomllib
 import unittest
-from pathlib import Path
 
+import pages
 import paths
-from cpp_sentences import written
-from language import LANGUAGES, PLACE, TEXTS, Language
+from language import LANGUAGES, TEXTS, Language
+from synthetic import calibration, said
 
 PAGE = paths.SOURCE / "report" / "page"
 # Signs, symbols and names that are the same in every language.
@@ -18,11 +18,10 @@ SIGNS = {"u", "U", "k", "F", "p", "rms", "%", "SHA-256", "scancal", "scancal ref
 
 
 def texts(code: str) -> dict[str, str]:
-    """All words by their keys; sentences.toml is of another kind."""
+    """All words by their keys."""
     found = {}
     for file in sorted((TEXTS / code).glob("*.toml")):
-        if file.name != "sentences.toml":
-            _collect(tomllib.loads(file.read_text(encoding="utf-8")), "", found)
+        _collect(tomllib.loads(file.read_text(encoding="utf-8")), "", found)
     return found
 
 
@@ -37,10 +36,6 @@ def _collect(table: dict, prefix: str, into: dict[str, str]) -> None:
 
 def places(text: str) -> set[str]:
     return {name for _, name, _, _ in string.Formatter().parse(text) if name is not None}
-
-
-def sentences() -> list[dict[str, str]]:
-    return tomllib.loads((TEXTS / "de" / "sentences.toml").read_text(encoding="utf-8"))["sentence"]
 
 
 class TextsTest(unittest.TestCase):
@@ -104,95 +99,37 @@ class TextsTest(unittest.TestCase):
 
 
 class SentencesTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.written = written([paths.SOURCE / "solver", paths.SOURCE / "models"])
-        cls.english = [each["english"] for each in sentences()]
-        cls.german = Language("de")
+    def test_what_the_program_says_has_its_german(self):
+        for scene in ("sample", "robot", "bad"):
+            c = json.loads(pages.calibration(scene).read_text(encoding="utf-8"))
+            german = Language("de", c)
+            told = [*c["unreliable"], *c["warnings"],
+                    *[row[key] for row in c["compare"] for key in ("method", "note") if row[key]],
+                    *[line["source"] for line in c["budget"] if line["source"].startswith(("residuals", "prior"))]]
+            self.assertEqual([english for english in told if german.translated(english)[1] != "de"], [], scene)
+            words = [("procedure.residual", c["residual"])] + [
+                ("considered.set_aside.because", reason)
+                for target in c["targets"] for reason in target["set_aside_reasons"]]
+            self.assertEqual([word for key, word in words if german.named(key, word) == word], [], scene)
 
-    def test_the_sources_were_read(self):
-        self.assertGreater(len(self.written), 30)
-        pieces = {piece for each in self.written for piece in each.pieces}
-        for known in ("there is only one placement of the plate",
-                      "is least determined: hold it, give it a prior, or allow "
-                      "more iterations", "the equations are singular", "off the line of their profile",
-                      "ball centre"):
-            self.assertIn(known, pieces)
+    def test_a_shown_page_has_no_sentence_in_english(self):
+        for scene in ("sample", "bad"):
+            shown = re.search('<section id="verdict".*?</section>', pages.page(scene, "de").read_text(encoding="utf-8"),
+                              re.DOTALL)[0]
+            self.assertIn("<li>" if scene == "bad" else "verdict", shown)
+            self.assertNotIn('lang="en"', shown, scene)
 
-    def test_a_new_sentence_would_be_found(self):
-        with tempfile.TemporaryDirectory() as folder:
-            (Path(folder) / "new.cc").write_text("""
-                std::string Why(int k) { return k ? "because; so" : ""; }
-                void Judge(Calibration* c) {
-                  const std::string how = c->ok() ? "well" : fmt::format("badly by {}", 1);
-                  (k > 1 ? c->unreliable : c->warnings)  // "no sentence"
-                      .push_back(fmt::format("{}: found {:.2g} "
-                                             "times", name, 3) + Why(1) + how);
-                }
-                """, encoding="utf-8")
-            found = written([Path(folder)])
-        self.assertEqual(len(found), 1)
-        self.assertEqual(sorted(found[0].pieces), [": found", "badly by", "because; so", "times", "well"])
-
-    def test_every_sentence_of_the_program_has_its_german(self):
-        known = [PLACE.sub("{}", english) for english in self.english]
-        missing = [f"{each.where}: {piece}" for each in self.written for piece in each.pieces
-                   if piece not in SIGNS and not any(piece in english for english in known)]
-        self.assertEqual(missing, [], "add them to texts/de/sentences.toml")
-
-    def test_no_german_is_left_of_a_sentence_that_is_gone(self):
-        code = "\n".join(file.read_text(encoding="utf-8") for room in ("solver", "models")
-                         for file in (paths.SOURCE / room).rglob("*.cc"))
-        code = re.sub(r'"\s*\n?\s*"', "", code)
-        clauses = {english: max(re.split(r"[;:,()]", PLACE.sub(";", english)), key=len).strip()
-                   for english in self.english}
-        self.assertEqual([english for english, clause in clauses.items() if clause not in code], [])
-
-    def test_both_sides_have_the_same_places(self):
-        for each in sentences():
-            self.assertEqual(sorted(set(PLACE.findall(each["english"]))),
-                             sorted(set(PLACE.findall(each["here"]))), each["english"])
-
-    def test_examples(self):
-        ask = ("; estimate it, or declare how uncertain it is, if it is what it looks like",
-               "Schätzen oder die Unsicherheit angeben, wenn es das ist, wonach es aussieht")
-        for english, german in (
-                ("lack of fit: tilt_x is held, but the residuals ask for -0.12 rad (F = 200, p < 1e-16), which "
-                 f"would move N by 6.2 u (also seen as tilt_y, form){ask[0]}",
-                 "Mangelnde Anpassung: tilt_x ist festgehalten, die Residuen verlangen jedoch -0,12 rad (F = 200, "
-                 f"p < 1e-16); das verschöbe N um das 6,2-Fache von u (ebenso gedeutet als tilt_y, form). {ask[1]}"),
-                ("lack of fit: form is considered with a smaller u, but the residuals ask for 0.02 mm rms "
-                 f"(F = 3.5, p = 1e-05), which would move M by 0.4 u{ask[0]}",
-                 "Mangelnde Anpassung: form ist mit kleinerer Unsicherheit berücksichtigt, die Residuen verlangen "
-                 f"jedoch 0,02 mm rms (F = 3,5, p = 1e-05); das verschöbe M um das 0,4-Fache von u. {ask[1]}"),
-                ("there is only one placement of the plate; N suffers most (u = 0.12 mm); add a placement with the "
-                 "plate turned about the vertical by 20 deg or more against the others",
-                 "Es gibt nur eine Aufstellung der Platte; am meisten leidet N (u = 0,12 mm). Eine Aufstellung "
-                 "ergänzen, bei der die Platte gegen die übrigen um 20° oder mehr um die Senkrechte gedreht ist"),
-                ("the refinement did not converge: no convergence after 100 iterations; tilt_x is least "
-                 "determined: hold it, give it a prior, or allow more iterations",
-                 "Die Ausgleichung konvergierte nicht: keine Konvergenz nach 100 Iterationen; am wenigsten bestimmt "
-                 "ist tilt_x: festhalten, Vorwissen angeben oder mehr Iterationen zulassen"),
-                ("the refinement did not converge: Ceres says so.",
-                 "Die Ausgleichung konvergierte nicht: Ceres says so."),
-                ("left v1.5.csv: 3 of 1200 points on balls were set aside, farther than 4.5 standard deviations "
-                 "from the sphere",
-                 "left v1.5.csv: 3 von 1200 Punkten auf Kugeln wurden ausgesondert, weiter als 4,5 "
-                 "Standardabweichungen von der Kugel entfernt")):
-            self.assertEqual(self.german.translated(english), (german, "de"))
-
-    def test_a_number_is_no_word(self):
-        self.assertEqual(self.german.translated("the sweep of many deg is too narrow")[1], "en")
+    def test_messages_of_all_that_are_shown(self):
+        german = Language("de", calibration(messages=[said("one", "eins")]), None,
+                          calibration(messages=[said("two", "zwei")]), calibration())
+        self.assertEqual([german.translated(word) for word in ("one", "two", "three")],
+                         [("eins", "de"), ("zwei", "de"), ("three", "en")])
 
     def test_what_stays_english_is_marked(self):
-        self.assertEqual(self.german.sentence("not <known>"), '<span lang="en">not &lt;known&gt;</span>')
+        self.assertEqual(Language("de").sentence("not <known>"), '<span lang="en">not &lt;known&gt;</span>')
         self.assertEqual(Language("en").sentence("not <known>"), "not &lt;known&gt;")
-
-    def test_names_that_look_like_places_or_groups(self):
-        name = r"{~x} \g<0> \1 {0}"
-        text, _ = self.german.translated(f"{name}: its prior and the data disagree: the result lies 3.5 times the "
-                                         "prior's u away from it")
-        self.assertTrue(text.startswith(name), text)
+        german = Language("de", calibration(messages=[said("known", "<bekannt>")]))
+        self.assertEqual(german.sentence("known"), "&lt;bekannt&gt;")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@ import copy
 import re
 import unittest
 
-from synthetic import CERTIFICATE, calibration, estimated, text_of
+from synthetic import CERTIFICATE, calibration, estimated, said, text_of
 import administration
 import page
 import procedure
@@ -12,6 +12,7 @@ from language import Language
 EN, DE = Language("en"), Language("de")
 SENTENCE = "N: leaving one target out moves it 2.7 times as far as its u explains; the targets disagree, so u is " \
            "too small, or the model lacks something"
+GERMAN = "N: Wird ein Prüfkörper weggelassen, so ändert sich der Wert 2,7-mal so stark, wie es u erklärt"
 
 
 def robot(**changes):
@@ -48,10 +49,13 @@ class VerdictTest(unittest.TestCase):
             self.assertIn("without a reason", shown)
 
     def test_in_german(self):
+        doubtful = calibration(status="unreliable", unreliable=[SENTENCE], messages=[said(SENTENCE, GERMAN)])
+        self.assertIn(f"Auf dieses Ergebnis ist kein Verlass. Grund: {GERMAN}",
+                      text_of("verdict", doubtful, language="de"))
+
+    def test_a_file_of_before_there_were_messages_stays_english(self):
         shown = text_of("verdict", calibration(status="unreliable", unreliable=[SENTENCE]), language="de")
-        self.assertIn("Auf dieses Ergebnis ist kein Verlass. Grund: N: Wird ein Prüfkörper weggelassen",
-                      shown)
-        self.assertIn("2,7-mal", shown)
+        self.assertIn(f"Auf dieses Ergebnis ist kein Verlass. Grund: {SENTENCE}", shown)
 
     def test_without_declared_influences_it_is_not_traceable(self):
         self.assertNotIn("not a traceable", text_of("verdict", calibration()))
