@@ -1,7 +1,6 @@
 #include "solver/calibrate.h"
 #include <algorithm>
 #include <cmath>
-#include "solver/judge.h"
 #include "solver/uncertainty/budget.h"
 #include "solver/uncertainty/gum.h"
 #include "solver/uncertainty/jackknife.h"

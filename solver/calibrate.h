@@ -5,6 +5,7 @@
 #include "solver/linearize.h"
 #include "solver/refine.h"
 #include "solver/uncertainty/covariance.h"
+#include "solver/uncertainty/jackknife.h"
 #include "solver/uncertainty/variances.h"
 
 namespace scancal {
@@ -52,5 +53,11 @@ Headline HeadlineOf(const Solution& solution, const Covariance& clustered);
 // K V K' of everything that was estimated or declared where the fit is weighted; else clustered by view, and what all
 // views share. The model adds what only it can say.
 Calibration Summarize(const Solution& solution, const PureError& pure_error);
+
+// Adds to warnings what is worth knowing, to unreliable what forbids relying on the result: no convergence, too few
+// views, targets that contradict each other, data that contradict a prior, and what the model leaves out if it is
+// significant and moves a quantity by more than its u. With equal weights lack of fit is a warning only. noise_dof:
+// degrees of freedom of what is known of the noise.
+void AddDoubts(const Solution& solution, const Jackknife& jackknife, double noise_dof, Calibration* calibration);
 
 }  // namespace scancal

@@ -1,6 +1,6 @@
-#include "solver/judge.h"
 #include <algorithm>
 #include <cmath>
+#include "solver/calibrate.h"
 #include "solver/uncertainty/gum.h"
 #include "solver/uncertainty/misfit.h"
 

@@ -1,6 +1,6 @@
-#include "models/flange_ball/fit.h"
 #include <algorithm>
 #include <memory>
+#include "models/flange_ball/scanner.h"
 #include "models/scanner.h"
 
 namespace scancal::flange_ball {

@@ -1,5 +1,5 @@
-// What the points of a scan leave behind: profiles, and placements of the plate made of them. The points are gone
-// behind this line.
+// From the file of a scan to the placement of a plate: points as they are read, the profiles that stand for them
+// exactly, and placements made of profiles, in which no point exists any more.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -13,10 +13,37 @@
 #include "io/result.h"
 #include "models/line/noise.h"
 #include "models/turntable.h"
-#include "models/turntable/scan.h"
+#include "models/turntable/declare.h"
 #include "solver/calibrate.h"
 
 namespace scancal::turntable {
+
+struct RawProfile {
+  double key = 0;             // value of the column `profile`; without it the running number
+  double alpha = 0;           // rad, clockwise seen from +Z
+  std::vector<double> y, z;   // mm
+  std::vector<double> range;  // mm; a lidar's, else empty
+};
+
+void OrderAlongLine(RawProfile* profile);  // by z; points at one z keep their order
+
+struct RawScan {
+  std::string name;                  // of the target
+  std::vector<RawProfile> profiles;  // in the order of their keys
+  double missing = 0;                // no return
+  double off_line = 0;               // removed by Clean: off the line of their profile
+  Sentence warning;                  // empty: none
+};
+
+// Reads the points that `keep` keeps. With a column `profile` its values group the points, in any order; without it a
+// change of the angle starts a profile.
+Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense);
+
+// One batch of a scan as points of the sensor: columns angle (rad, by the sense), y, z, and range for a lidar.
+struct SensorColumns {
+  std::vector<double> alpha, y, z, range;
+};
+SensorColumns ToSensor(double sense, const ScanBatch& batch);
 
 inline constexpr int kSegments = 8;
 

@@ -1,4 +1,3 @@
-#include "models/turntable/scan.h"
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include "io/message.h"
 #include "io/progress.h"
 #include "models/line/moments.h"
+#include "models/turntable/compress.h"
 
 namespace scancal::turntable {
 namespace {

@@ -1,7 +1,7 @@
 // Doubts that the solver itself can name.
-#include "solver/judge.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include "solver/calibrate.h"
 #include "tests/solver/line_model.h"
 
 namespace scancal {

@@ -4,7 +4,7 @@
 #include <Eigen/QR>
 #include <numbers>
 #include <vector>
-#include "models/flange_ball/fit.h"
+#include "models/flange_ball/scanner.h"
 #include "solver/random.h"
 
 namespace scancal::flange_ball {

@@ -1,7 +1,7 @@
 // Noise along the laser line moves where points were measured, and must not look like a form of the plate.
 #include <gtest/gtest.h>
 #include "io/units.h"
-#include "models/turntable/scan.h"
+#include "models/turntable/compress.h"
 #include "models/turntable/scanner.h"
 #include "models/turntable/simulate.h"
 #include "solver/random.h"
