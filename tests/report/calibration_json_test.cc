@@ -143,7 +143,7 @@ TEST(CalibrationJsonTest, AnUnreliableOneStaysUnreliable) {
 }
 
 TEST(CalibrationJsonTest, WhatIsSaidInOtherLanguages) {
-  Calibration c = SomeCalibration();
+  Calibration c = WithBudgetAndVolume();
   c.warnings = {Sentence{"one", "eins", "some.one"}, Sentence{"words of others"}, Sentence{"one", "eins", "some.one"}};
   c.unreliable = {Sentence{"two", "zwei", "some.two"}};
   c.budget[0].source = {"three", "drei", "some.three"};

@@ -48,5 +48,5 @@ def _misfit(misfit: dict, c: Calibration, t: Language) -> dict:
 
 def _reasons(target: dict, t: Language) -> str:
     reasons = (target.get("set_aside_reasons") or {}).items()
-    return ", ".join(t("considered.set_aside.reason", count=count(number), reason=t.named("considered.set_aside.because", reason))
-                     for reason, number in reasons)
+    return ", ".join(t("considered.set_aside.reason", count=count(number),
+                       reason=t.named("considered.set_aside.because", reason)) for reason, number in reasons)
