@@ -9,6 +9,63 @@ namespace {
 
 constexpr size_t kBlock = size_t{1} << 20;  // stays in the second-level cache
 constexpr size_t kLongestLine = size_t{1} << 26;
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+// Walks over a cell that starts with a quote, like SkipCell.
+const char* SkipQuotedCell(const char* at) {
+  bool quoted = false;  // a doubled quote leaves and enters again, which comes to the same
+  for (; *at != '\n' && (quoted || *at != ','); ++at) {
+    if (*at == '"') quoted = !quoted;
+  }
+  return at;
+}
+
+// From the start of a cell to the comma or the '\n' behind it.
+inline const char* SkipCell(const char* at) {
+  if (*at == '"') return SkipQuotedCell(at);
+  while (*at != ',' && *at != '\n') ++at;
+  return at;
+}
+
+const char* SkipBlanks(const char* at) {
+  while (*at == ' ') ++at;
+  return at;
+}
+
+// A cell that is no plain number; nullptr if it is no number at all.
+const char* ReadCellCarefully(const char* at, Cells cells, double* number) {
+  const char* const end = SkipCell(SkipBlanks(at));
+  const ParsedNumber parsed = ParseNumber({at, end});
+  *number = parsed.kind == NumberKind::kMissing ? kNothing : parsed.value;
+  const bool right =
+      parsed.kind == NumberKind::kNumber || (parsed.kind == NumberKind::kMissing && cells == Cells::kNumberOrNothing);
+  return right ? end : nullptr;
+}
+
+// `end`: of the block of lines.
+inline const char* ReadCell(const char* at, const char* end, Cells cells, ColumnParser& parser, double* number) {
+  const char* start = at;
+  while (*start == ' ') ++start;
+  if (const char* number_end = parser.Parse(start, end, number)) {
+    if (*number_end == '\r') ++number_end;
+    if (*number_end == ',' || *number_end == '\n') return number_end;
+  }
+  return ReadCellCarefully(at, cells, number);
+}
+
+std::string CellText(std::string_view cell) {
+  const std::string_view quoted = WithoutBlanks(cell);
+  if (quoted.size() < 2 || quoted.front() != '"' || quoted.back() != '"') return std::string(quoted);
+  std::string text(WithoutBlanks(quoted.substr(1, quoted.size() - 2)));
+  for (size_t at = text.find("\"\""); at != std::string::npos; at = text.find("\"\"", at + 1)) text.erase(at, 1);
+  return text;
+}
+
+// Blank, or a comment.
+bool IsWithoutCells(std::string_view line) {
+  const std::string_view text = WithoutBlanks(line);
+  return text.empty() || text.front() == '#';
+}
 
 }  // namespace
 
@@ -80,60 +137,141 @@ Result<std::optional<std::string_view>> TextLines::TakeLine() {
   return std::optional(line);
 }
 
-const char* SkipQuotedCell(const char* at) {
-  bool quoted = false;  // a doubled quote leaves and enters again, which comes to the same
-  for (; *at != '\n' && (quoted || *at != ','); ++at) {
-    if (*at == '"') quoted = !quoted;
-  }
-  return at;
-}
-
-const char* ReadCellCarefully(const char* at, ParsedNumber* number) {
-  const char* start = at;
-  while (*start == ' ') ++start;
-  const char* const end = SkipCell(start);
-  *number = ParseNumber(std::string_view(at, static_cast<size_t>(end - at)));
-  return end;
-}
-
-std::string CellText(std::string_view cell) {
-  const std::string_view quoted = WithoutBlanks(cell);
-  if (quoted.size() < 2 || quoted.front() != '"' || quoted.back() != '"') return std::string(quoted);
-  std::string text(WithoutBlanks(quoted.substr(1, quoted.size() - 2)));
-  for (size_t at = text.find("\"\""); at != std::string::npos; at = text.find("\"\"", at + 1)) text.erase(at, 1);
-  return text;
-}
-
-std::vector<CsvField> SplitCells(std::string_view line) {
+std::vector<std::string> SplitCells(std::string_view line) {
   const std::string ended = std::string(line) + '\n';
-  const char* const line_start = ended.c_str();
-  const char* const line_end = line_start + line.size();
-  std::vector<CsvField> fields;
-  for (const char* at = line_start;; ++at) {
-    while (*at == ' ') ++at;
-    const char* const end = SkipCell(at);
-    const std::string_view before(line_start, static_cast<size_t>(at - line_start));
-    fields.push_back({.text = CellText({at, end}), .column = 1 + CountCharacters(before)});
-    at = end;
-    if (at == line_end) return fields;
+  const char* const line_end = ended.c_str() + line.size();
+  std::vector<std::string> cells;
+  for (const char* at = ended.c_str();; ++at) {
+    const char* const start = SkipBlanks(at);
+    at = SkipCell(start);
+    cells.push_back(CellText({start, at}));
+    if (at == line_end) return cells;
   }
 }
 
-Error WrongCsvCell(const std::string& place, std::string_view line, const char* cell, const std::string& name,
-                   NumberKind kind) {
-  while (*cell == ' ') ++cell;
-  const auto size = static_cast<size_t>(SkipCell(cell) - cell);
-  const size_t column = 1 + CountCharacters(line.substr(0, static_cast<size_t>(cell - line.data())));
-  return Error{place + ":" + std::to_string(column) + ": " + name + ": found " +
-               Quoted(WithoutBlanks(std::string_view(cell, size))) + Expectation(kind) + WrongSeparator(line)};
+Result<DelimitedText> DelimitedText::Open(const std::filesystem::path& path) {
+  SCANCAL_ASSIGN_OR_RETURN(TextLines text, TextLines::Open(path));
+  return DelimitedText(std::move(text));
 }
 
-bool IsWithoutCells(std::string_view line) {
-  const std::string_view text = WithoutBlanks(line);
-  return text.empty() || text.front() == '#';
+void DelimitedText::Expect(std::vector<ExpectedCells> columns, std::vector<std::string> header, CellCount count) {
+  columns_.assign(columns.size(), {});
+  for (size_t k = 0; k < columns.size(); ++k) columns_[k].cells = columns[k].cells;
+  columns_.back().behind = '\n';
+  expected_ = std::move(columns);
+  header_ = std::move(header);
+  count_ = count;
 }
 
-std::string WrongSeparator(std::string_view line) {
+void DelimitedText::KeepLines(int64_t first, int64_t last) {
+  first_line_ = first;
+  last_line_ = last;
+}
+
+// Walks over the lines that are no rows or unwanted.
+Result<std::string_view> DelimitedText::Peek() {
+  for (; line_ < last_line_; ++line_) {
+    SCANCAL_ASSIGN_OR_RETURN(const bool filled, text_.Fill());
+    if (!filled) break;
+    line_start_ = text_.begin();
+    if (line_ + 1 >= first_line_ && !IsWithoutCells(Line())) return Line();
+    text_.SkipTo(Line().end() + 1);
+  }
+  return std::string_view();
+}
+
+void DelimitedText::Skip() {
+  text_.SkipTo(Line().end() + 1);
+  ++line_;
+}
+
+// Behind the last one, and like it; returns the last one.
+DelimitedText::Column* DelimitedText::AddColumn() {
+  columns_.push_back({columns_.back().cells, '\n', {}, nullptr, 0});
+  Column* const last = &columns_.back() - 1;
+  last->behind = ',';
+  return last;
+}
+
+Result<bool> DelimitedText::Next() {
+  const char* at = text_.begin();
+  // At a glance: nearly every row.
+  if (at == text_.end() || *at <= ' ' || *at == '#' || line_ + 1 < first_line_ || line_ >= last_line_) {
+    SCANCAL_ASSIGN_OR_RETURN(const std::string_view row, Peek());
+    if (row.empty()) return false;
+    at = row.data();
+  }
+  line_start_ = at;
+  ++line_;
+  const char* const end = text_.end();
+  Column* column = columns_.data();
+  for (;; ++column, ++at) {
+    column->start = at;
+    if (column->cells >= Cells::kNumber) {
+      at = ReadCell(at, end, column->cells, column->parser, &column->number);
+      if (at == nullptr) return Wrong(column);
+    } else {
+      if (column->cells != Cells::kIgnored) at = SkipBlanks(at);
+      const char* const start = at;
+      at = SkipCell(start);
+      // Any other first character stands for itself.
+      const bool may_be_empty = column->cells == Cells::kText && *start <= ',';
+      if (may_be_empty && CellText({start, at}).empty()) return Wrong(column);
+    }
+    if (*at != column->behind) {
+      if (count_ != CellCount::kAny) return Wrong(nullptr);
+      if (*at == ',') column = AddColumn();
+    }
+    if (*at == '\n') break;
+  }
+  text_.SkipTo(at + 1);
+  cells_ = static_cast<size_t>(column - columns_.data()) + 1;
+  return true;
+}
+
+std::string DelimitedText::Text(size_t column) const {
+  const char* const start = columns_[column].start;
+  return CellText({start, SkipCell(SkipBlanks(start))});
+}
+
+size_t DelimitedText::Start(size_t column) {
+  const char* const start = SkipBlanks(columns_[column].start);
+  if (std::exchange(counted_line_, line_) != line_) {
+    counted_ = line_start_;
+    characters_ = 0;
+  }
+  characters_ += CountCharacters({counted_, start});
+  counted_ = start;
+  return 1 + characters_;
+}
+
+// The line in hand, without its end.
+std::string_view DelimitedText::Line() const {
+  return {line_start_,
+          static_cast<const char*>(std::memchr(line_start_, '\n', static_cast<size_t>(text_.end() - line_start_)))};
+}
+
+// The row in hand has this wrong cell, or none but a wrong number of them.
+Error DelimitedText::Wrong(const Column* column) {
+  const size_t found = SplitCells(Line()).size();
+  const bool is_text = column != nullptr && column->cells == Cells::kText;
+  if (column != nullptr && (count_ != CellCount::kFirst || is_text || found == columns_.size())) {
+    const auto k = static_cast<size_t>(column - columns_.data());
+    const std::string& name = expected_[std::min(k, expected_.size() - 1)].name;
+    const std::string place = Place() + ":" + std::to_string(Start(k)) + ": " + name + ": ";
+    if (is_text) return Error{place + "the cell is empty, expected text"};
+    const char* const start = SkipBlanks(column->start);
+    const std::string_view cell = WithoutBlanks({start, SkipCell(start)});
+    return Error{place + "found " + Quoted(cell) + Expectation(ParseNumber(cell).kind) + WrongSeparator()};
+  }
+  const std::string message = Place() + ": found " + std::to_string(found) + (found == 1 ? " cell" : " cells") +
+                              ", expected " + std::to_string(columns_.size()) + " (" + Listed(header_) + ")";
+  if (count_ == CellCount::kFirst) return Error{message + WrongSeparator()};
+  return Error{message + (found < columns_.size() ? CutOff() : "")};
+}
+
+std::string DelimitedText::WrongSeparator() const {
+  const std::string_view line = Line();
   const auto has = [line](char c) { return line.find(c) != std::string_view::npos; };
   if (has(';')) return "; the cells are separated by semicolons, expected commas";
   if (WithoutBlanks(line).find('\r') != std::string_view::npos) {
@@ -141,6 +279,12 @@ std::string WrongSeparator(std::string_view line) {
   }
   if (has('\t') && !has(',')) return "; the cells are separated by tabs, expected commas";
   return "";
+}
+
+std::string DelimitedText::CutOff() {
+  text_.SkipTo(Line().end() + 1);
+  const auto more = text_.Fill();
+  return more.ok() && !*more ? "; the file is probably cut off here" : "";
 }
 
 }  // namespace scancal

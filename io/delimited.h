@@ -1,10 +1,12 @@
-// Text of lines and cells.
+// Delimited text: lines of cells between commas (RFC 4180), in files of any size.
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 #include "io/input_file.h"
 #include "io/number.h"
@@ -12,11 +14,9 @@
 
 namespace scancal {
 
-// A text file of any size, read block by block, each block a number of whole lines.
-//
-// Every line ends with '\n', also a last one that has none in the file: whoever walks over a line needs no other check
-// for its end. A byte order mark is skipped. Read() rather than a mapping: a pipe will do, and a file that shrinks
-// meanwhile is an error instead of a SIGBUS.
+// Read block by block, each block a number of whole lines. Every line ends with '\n', also a last one that has none in
+// the file: whoever walks over a line needs no other check for its end. A byte order mark is skipped. Read() rather
+// than a mapping: a pipe will do, and a file that shrinks meanwhile is an error instead of a SIGBUS.
 class TextLines {
  public:
   static Result<TextLines> Open(const std::filesystem::path& path);
@@ -45,52 +45,84 @@ class TextLines {
   bool at_end_ = false;
 };
 
-// These walk over a line that ends with '\n', from the start of a cell to the comma or the '\n' behind it. A cell in
-// quotes may hold commas.
+// What the cells of a line say: without blanks and quotes around them, and a doubled quote within quotes is one. A cell
+// in quotes may hold commas.
+std::vector<std::string> SplitCells(std::string_view line);
 
-const char* SkipQuotedCell(const char* at);
-
-inline const char* SkipCell(const char* at) {
-  if (*at == '"') return SkipQuotedCell(at);
-  while (*at != ',' && *at != '\n') ++at;
-  return at;
-}
-
-const char* ReadCellCarefully(const char* at, ParsedNumber* number);
-
-// A cell that is a plain number is read in one go, any other one by ReadCellCarefully. `end`: of the block of lines.
-inline const char* ReadCell(const char* at, const char* end, ColumnParser& parser, ParsedNumber* number) {
-  const char* start = at;
-  while (*start == ' ') ++start;
-  if (const char* number_end = parser.Parse(start, end, &number->value)) {
-    if (*number_end == '\r') ++number_end;
-    if (*number_end == ',' || *number_end == '\n') {
-      number->kind = NumberKind::kNumber;
-      return number_end;
-    }
-  }
-  return ReadCellCarefully(at, number);
-}
-
-// What a cell says: without blanks and quotes around it, and a doubled quote within them is one (RFC 4180).
-std::string CellText(std::string_view cell);
-
-// For the lines that are no hurry: the headers and the wrong ones.
-struct CsvField {
-  std::string text;   // see CellText
-  size_t column = 1;  // where it starts in the line, 1-based, in characters
+enum class Cells {
+  kIgnored,        // anything; a quote behind a blank does not open it (RFC 4180)
+  kTextOrNothing,  // nothing: empty
+  kText,
+  kNumber,
+  kNumberOrNothing  // nothing: empty or nan, reads as nan
 };
-std::vector<CsvField> SplitCells(std::string_view line);
 
-// left.csv:1042:8: y: found "12.3.4", expected a number; `place` is left.csv:1042, `cell` starts in `line`, which is
-// followed by '\n'.
-Error WrongCsvCell(const std::string& place, std::string_view line, const char* cell, const std::string& name,
-                   NumberKind kind);
+struct ExpectedCells {  // of a column
+  Cells cells = Cells::kIgnored;
+  std::string name = {};  // for messages
+};
 
-// Blank, or a comment.
-bool IsWithoutCells(std::string_view line);
+// How many cells a row has, and what is told if a number in it is wrong as well.
+enum class CellCount {
+  kFirst,  // one for each column; their count: the line is cut off, or has other separators
+  kLast,   // one for each column; the number
+  kAny     // the last column is that of all further cells, too; the number
+};
 
-// "; the cells are separated by semicolons, expected commas" if there is reason to think so, else empty.
-std::string WrongSeparator(std::string_view line);
+// A text file row by row. Lines that are blank or begin with # are no rows. Cells and rows other than expected are
+// errors with their file, line and column.
+class DelimitedText {
+ public:
+  static Result<DelimitedText> Open(const std::filesystem::path& path);
+
+  Result<std::string_view> Peek();  // the next row, without its end; empty at the end of the file
+  void Skip();                      // takes the row that Peek found
+  // From the next row on. header: as the file names its columns, for messages.
+  void Expect(std::vector<ExpectedCells> columns, std::vector<std::string> header, CellCount count);
+  // Rows before the first and behind the last of these lines of the file, 1-based, are left out.
+  void KeepLines(int64_t first, int64_t last);
+
+  Result<bool> Next();  // takes a row as expected; false at the end
+  // Of the row in hand, as it stands there.
+  size_t cells() const { return cells_; }
+  double Number(size_t column) const { return columns_[column].number; }
+  std::string Text(size_t column) const;
+  size_t Start(size_t column);  // of the cell in its line, in characters, 1-based; ask from left to right
+
+  const std::string& name() const { return text_.name(); }
+  int64_t line() const { return line_; }  // of the row in hand; at the end: the number of lines
+  std::string Place() const { return name() + ":" + std::to_string(line_); }
+  // Hints for complaints about the row in hand, empty if there is none.
+  std::string WrongSeparator() const;  // "; the cells are separated by semicolons, expected commas"
+  std::string CutOff();                // "; the file is probably cut off here": no line follows. Takes the row.
+  int64_t bytes_read() const { return text_.bytes_read(); }
+  int64_t bytes_total() const { return text_.bytes_total(); }
+
+ private:
+  struct Column {
+    Cells cells = Cells::kIgnored;
+    char behind = ',';
+    ColumnParser parser;
+    const char* start = nullptr;  // of the cell in hand
+    double number = 0;
+  };
+
+  explicit DelimitedText(TextLines text) : text_(std::move(text)) {}
+  std::string_view Line() const;
+  Column* AddColumn();
+  Error Wrong(const Column* column);
+
+  TextLines text_;
+  std::vector<Column> columns_;
+  std::vector<ExpectedCells> expected_;
+  std::vector<std::string> header_;
+  CellCount count_ = CellCount::kLast;
+  int64_t line_ = 0, first_line_ = 1, last_line_ = std::numeric_limits<int64_t>::max();
+  size_t cells_ = 0;
+  const char* line_start_ = nullptr;  // of the line in hand
+  int64_t counted_line_ = 0;          // Start() knows the number of characters in this line ...
+  const char* counted_ = nullptr;     // ... up to here
+  size_t characters_ = 0;
+};
 
 }  // namespace scancal

@@ -4,7 +4,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 #include "io/input_file.h"
@@ -106,8 +108,10 @@ static_assert(std::endian::native == std::endian::little, "arrays of type '<f8' 
 
 class NpyReader : public ScanReader {
  public:
-  NpyReader(const ScanFormat& format, InputFile file)
-      : format_(format), file_(std::move(file)), wanted_rows_(format), invalid_(InvalidValue(format)) {}
+  NpyReader(const ScanFormat& format, InputFile file) : format_(format), file_(std::move(file)) {
+    if (format.lines) std::tie(first_row_, last_row_) = *format.lines;
+    if (format.invalid) invalid_ = *format.invalid;
+  }
 
   Result<void> ReadHeader();
   Result<bool> Next(ScanBatch* batch) override;
@@ -122,8 +126,8 @@ class NpyReader : public ScanReader {
 
   ScanFormat format_;
   InputFile file_;
-  LineRange wanted_rows_;
-  double invalid_;
+  int64_t first_row_ = 1, last_row_ = std::numeric_limits<int64_t>::max();  // wanted, 1-based
+  double invalid_ = std::numeric_limits<double>::quiet_NaN();               // equals no number
   NpyHeader header_;
   std::vector<ChosenColumn> columns_;
   int64_t row_bytes_ = 0;
@@ -146,8 +150,8 @@ Result<void> NpyReader::ReadHeader() {
   SCANCAL_RETURN_IF_ERROR(CheckSize());
   SCANCAL_ASSIGN_OR_RETURN(columns_, ChooseColumns(format_, format_.npy_columns, file_.name() + ": columns"));
   if (header_.rows == 0) return NoPoints(format_, 0);
-  row_ = std::clamp<int64_t>(wanted_rows_.first - 1, 0, header_.rows);
-  if (row_ == header_.rows || wanted_rows_.last <= row_) return NoPoints(format_, header_.rows);
+  row_ = std::clamp<int64_t>(first_row_ - 1, 0, header_.rows);
+  if (row_ == header_.rows || last_row_ <= row_) return NoPoints(format_, header_.rows);
   return file_.Skip(row_ * row_bytes_);
 }
 
@@ -174,7 +178,7 @@ Result<bool> NpyReader::Next(ScanBatch* batch) {
 }
 
 Result<size_t> NpyReader::ReadRows(size_t most) {
-  const int64_t left = std::min(header_.rows, wanted_rows_.last) - row_;
+  const int64_t left = std::min(header_.rows, last_row_) - row_;
   const size_t rows = std::min(most, static_cast<size_t>(std::max<int64_t>(left, 0)));
   buffer_.resize(rows * static_cast<size_t>(row_bytes_));
   SCANCAL_ASSIGN_OR_RETURN(const size_t count, file_.Read(buffer_.data(), buffer_.size()));

@@ -2,12 +2,10 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <utility>
 #include <vector>
 #include "io/number.h"
@@ -86,19 +84,6 @@ Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const 
 
 // The unit of `wanted` if `found` is its name, plain ("y") or with a unit ("y_mm"); else empty.
 std::optional<double> MatchColumn(const ScanColumn& wanted, std::string_view found, const Units& units);
-
-// The lines of the file that are wanted.
-struct LineRange {
-  int64_t first = 1, last = std::numeric_limits<int64_t>::max();
-  explicit LineRange(const ScanFormat& format) {
-    if (format.lines) std::tie(first, last) = *format.lines;
-  }
-};
-
-// The value of a missing point; without one, nan, which equals no number.
-inline double InvalidValue(const ScanFormat& format) {
-  return format.invalid.value_or(std::numeric_limits<double>::quiet_NaN());
-}
 
 // "left.csv: no points": the file has none, or the wanted lines have none.
 Error NoPoints(const ScanFormat& format, int64_t lines_in_file);

@@ -1,66 +1,14 @@
-#include <algorithm>
+// Scans in delimited text: a point or a profile per line.
 #include <cctype>
+#include <cmath>
 #include <utility>
 #include "io/delimited.h"
-#include "io/message.h"
 #include "io/scan.h"
 
 namespace scancal {
 namespace {
 
-constexpr size_t kIgnored = static_cast<size_t>(-1);
-
-struct CsvColumn {           // of the file
-  size_t target = kIgnored;  // column of the batch
-  double factor = 1;
-  ColumnParser parser;
-};
-
-// One point per line, a header with names.
-class CsvReader : public ScanReader {
- public:
-  CsvReader(const ScanFormat& format, TextLines text)
-      : format_(format), text_(std::move(text)), wanted_lines_(format), invalid_(InvalidValue(format)) {}
-
-  Result<void> ReadHeader();
-  Result<bool> Next(ScanBatch* batch) override;
-  int64_t bytes_read() const override { return text_.bytes_read(); }
-  int64_t bytes_total() const override { return text_.bytes_total(); }
-
- private:
-  enum class Line { kPoint, kMissing, kWrong };
-  Line ReadLine(size_t row);
-  Line Wrong(const char* cell, const CsvColumn& column, NumberKind kind);
-  Result<void> ReadBlock(size_t* points);
-  bool SkipsLine();
-  std::string_view FirstLine() const;
-  std::string Place() const { return text_.name() + ":" + std::to_string(line_); }
-  Error Complaint();
-  Error WrongCellCount(size_t found);
-
-  ScanFormat format_;
-  TextLines text_;
-  LineRange wanted_lines_;
-  double invalid_;
-  std::vector<std::string> header_;
-  std::vector<CsvColumn> columns_;  // of the file
-  std::vector<std::string> names_;  // of the batch
-  std::vector<double*> targets_;    // the columns of the batch
-  int64_t line_ = 1;                // the number of the line at text_.begin()
-  int64_t lines_with_cells_ = 0;
-  const char* wrong_cell_ = nullptr;  // where ReadLine stumbled; nullptr: over the number of cells
-  NumberKind wrong_kind_ = NumberKind::kText;
-  std::string wrong_name_;
-};
-
-std::vector<std::string> TextsOf(const std::vector<CsvField>& fields) {
-  std::vector<std::string> texts;
-  texts.reserve(fields.size());
-  for (const CsvField& field : fields) texts.push_back(field.text);
-  return texts;
-}
-
-// A first line of numbers, in one cell if the commas are missing.
+// A first row of numbers, in one cell if the commas are missing.
 bool IsWithoutNames(const std::vector<std::string>& header) {
   const std::string first = header.front().substr(0, header.front().find_first_of(";\t "));
   if (header.size() == 1) return ParseNumber(first).kind == NumberKind::kNumber;
@@ -73,281 +21,201 @@ bool IsWithoutNames(const std::vector<std::string>& header) {
   return any_number;
 }
 
-Result<void> CsvReader::ReadHeader() {
-  std::optional<std::string_view> line;
-  do {
-    SCANCAL_ASSIGN_OR_RETURN(line, text_.TakeLine());
-    if (!line) return NoPoints(format_, line_ - 1);
-    ++line_;
-  } while (IsWithoutCells(*line));
-  const std::string place = text_.name() + ":" + std::to_string(line_ - 1);
-  header_ = TextsOf(SplitCells(*line));
-  const std::string wrong_separator = WrongSeparator(*line);
-  if (IsWithoutNames(header_)) {
-    return Error{place + ": found numbers, expected a header line with the names of the columns" + wrong_separator};
-  }
-  auto chosen = ChooseColumns(format_, header_, place);
-  if (!chosen.ok()) return Error{chosen.error().message + wrong_separator, chosen.error().kind};
-  columns_.resize(header_.size());
-  for (const ChosenColumn& column : *chosen) {
-    columns_[column.index].target = names_.size();
-    columns_[column.index].factor = column.factor;
-    names_.push_back(column.name);
-  }
-  return {};
-}
-
-Result<bool> CsvReader::Next(ScanBatch* batch) {
-  batch->names = names_;
-  batch->columns.resize(names_.size());
-  targets_.clear();
-  for (std::vector<double>& column : batch->columns) {
-    column.resize(kBatchPoints);
-    targets_.push_back(column.data());
-  }
-  size_t points = 0;
-  while (points < kBatchPoints && line_ <= wanted_lines_.last) {
-    SCANCAL_ASSIGN_OR_RETURN(const bool filled, text_.Fill());
-    if (!filled) break;
-    SCANCAL_RETURN_IF_ERROR(ReadBlock(&points));
-  }
-  for (std::vector<double>& column : batch->columns) column.resize(points);
-  if (lines_with_cells_ == 0) return NoPoints(format_, line_ - 1);
-  return points > 0;
-}
-
-Result<void> CsvReader::ReadBlock(size_t* points) {
-  size_t row = *points;
-  for (; row < kBatchPoints && text_.begin() != text_.end() && line_ <= wanted_lines_.last; ++line_) {
-    if (SkipsLine()) continue;
-    ++lines_with_cells_;
-    const Line line = ReadLine(row);
-    if (line == Line::kWrong) return Complaint();
-    if (line == Line::kPoint) ++row;
-    else ++missing_;
-  }
-  *points = row;
-  return {};
-}
-
-// The line at text_.begin().
-std::string_view CsvReader::FirstLine() const {
-  const std::string_view block(text_.begin(), static_cast<size_t>(text_.end() - text_.begin()));
-  return block.substr(0, block.find('\n'));
-}
-
-// Walks over a line that is unwanted or has no cells.
-bool CsvReader::SkipsLine() {
-  const char first = *text_.begin();
-  const bool wanted = line_ >= wanted_lines_.first;
-  if (wanted && first > ' ' && first != '#') return false;  // at a glance: nearly every line
-  const std::string_view line = FirstLine();
-  if (wanted && !IsWithoutCells(line)) return false;
-  text_.SkipTo(line.data() + line.size() + 1);
-  return true;
-}
-
-// The line at text_.begin() into a row of the targets; stays at a line that is wrong.
-CsvReader::Line CsvReader::ReadLine(size_t row) {
-  const char* at = text_.begin() - 1;
-  bool missing = false;
-  for (CsvColumn& column : columns_) {
-    const char* const cell = ++at;  // behind the comma
-    if (column.target == kIgnored) {
-      at = SkipCell(cell);
-    } else {
-      ParsedNumber number;
-      at = ReadCell(cell, text_.end(), column.parser, &number);
-      if (number.kind > NumberKind::kMissing) return Wrong(cell, column, number.kind);
-      missing |= number.kind == NumberKind::kMissing || number.value == invalid_;
-      targets_[column.target][row] = number.value * column.factor;
-    }
-    if (*at != ',' && &column != &columns_.back()) return Line::kWrong;
-  }
-  if (*at != '\n') return Line::kWrong;
-  text_.SkipTo(at + 1);
-  return missing ? Line::kMissing : Line::kPoint;
-}
-
-CsvReader::Line CsvReader::Wrong(const char* cell, const CsvColumn& column, NumberKind kind) {
-  wrong_cell_ = cell;
-  wrong_kind_ = kind;
-  wrong_name_ = names_[column.target];
-  return Line::kWrong;
-}
-
-// What ReadLine stumbled over.
-Error CsvReader::Complaint() {
-  const std::string_view line = FirstLine();
-  if (wrong_cell_ == nullptr) return WrongCellCount(SplitCells(line).size());
-  return WrongCsvCell(Place(), line, wrong_cell_, wrong_name_, wrong_kind_);
-}
-
-Error CsvReader::WrongCellCount(size_t found) {
-  std::string message = Place() + ": found " + std::to_string(found) + (found == 1 ? " cell" : " cells") +
-                        ", expected " + std::to_string(columns_.size()) + " (" + Listed(header_) + ")";
-  const std::string_view line = FirstLine();
-  text_.SkipTo(line.data() + line.size() + 1);
-  const auto more = text_.Fill();
-  if (found < columns_.size() && more.ok() && !*more) message += "; the file is probably cut off here";
-  return Error{std::move(message)};
-}
-
-// The column as the model wants it; if it did not say, what the data set's format fixes: bearings are angles, y, z and
-// range are lengths.
-ScanColumn ColumnOf(const ScanFormat& format, const std::string& name) {
-  for (const ScanColumn& column : format.columns) {
-    if (column.name == name) return column;
-  }
-  const bool angle = name == "angle" || name == "bearing";
-  return {.name = name, .dimension = angle ? Dimension::kAngle : Dimension::kLength};
-}
-
-// One profile per line.
-class WideReader : public ScanReader {
+class CsvReader : public ScanReader {
  public:
-  WideReader(const ScanFormat& format, TextLines text)
+  CsvReader(const ScanFormat& format, DelimitedText text)
       : format_(format),
-        layout_(*format.layout),
         text_(std::move(text)),
-        wanted_lines_(format),
-        invalid_(InvalidValue(format)),
-        angle_factor_(format.units.Of(ColumnOf(format, "angle").dimension)),
-        across_factor_(format.units.Of(ColumnOf(format, layout_.across).dimension)),
-        value_factor_(format.units.Of(ColumnOf(format, layout_.value).dimension)) {}
-
-  Result<void> CheckLayout() const;
-  Result<bool> Next(ScanBatch* batch) override;
+        invalid_(format.invalid.value_or(std::numeric_limits<double>::quiet_NaN())) {}
   int64_t bytes_read() const override { return text_.bytes_read(); }
   int64_t bytes_total() const override { return text_.bytes_total(); }
 
- private:
-  Result<void> ReadLine(std::string_view line, ScanBatch* batch);
-  bool TakesHeader(std::string_view line);
-  Result<void> ReadCells(std::string_view line, ParsedNumber* angle);
-  Result<void> CheckCellCount(std::string_view line);
-  std::string Place() const { return text_.name() + ":" + std::to_string(line_); }
+ protected:
+  // From here on only the wanted lines.
+  void KeepLines() {
+    if (format_.lines) text_.KeepLines(format_.lines->first, format_.lines->second);
+  }
+  bool IsMissing(double number) const { return std::isnan(number) || number == invalid_; }
+  // There were points, or none at all at the end of the file is an error.
+  Result<bool> Taken(size_t points) {
+    any_point_ |= points > 0;
+    if (!any_point_ && missing_ == 0) return NoPoints(format_, text_.line());
+    return points > 0;
+  }
 
-  ScanFormat format_;
-  WideLayout layout_;
-  TextLines text_;
-  LineRange wanted_lines_;
-  double invalid_, angle_factor_, across_factor_, value_factor_;
-  ColumnParser angle_parser_, value_parser_;
-  std::vector<double> values_;  // of the line, as they stand in the file; nan if missing
-  size_t cells_ = 0;            // of every line
-  bool first_ = true;           // the line in hand is the first with cells
-  int64_t line_ = 0;            // its number
-  int64_t lines_with_cells_ = 0;
+  const ScanFormat format_;
+  DelimitedText text_;
+
+ private:
+  double invalid_;  // nan, which equals no number, if there is none
+  bool any_point_ = false;
 };
 
-Result<void> WideReader::CheckLayout() const {
-  if (layout_.angle_column >= 1 && layout_.angle_column < layout_.first_column) return {};
-  return Error{text_.name() + ": layout: found angle_column: " + std::to_string(layout_.angle_column) +
-               ", first_column: " + std::to_string(layout_.first_column) +
-               ", expected the column of the angle, counted from 1, before the first cell"};
-}
+// A point per line, a header with names.
+class LongReader : public CsvReader {
+ public:
+  using CsvReader::CsvReader;
 
-Result<bool> WideReader::Next(ScanBatch* batch) {
-  batch->names = {"angle", layout_.across, layout_.value, "profile"};
-  batch->columns.resize(batch->names.size());
-  for (std::vector<double>& column : batch->columns) column.clear();
-  while (batch->size() < kBatchPoints && line_ < wanted_lines_.last) {
-    SCANCAL_ASSIGN_OR_RETURN(const auto line, text_.TakeLine());
-    if (!line) break;
-    ++line_;
-    if (IsWithoutCells(*line)) continue;
-    if (std::exchange(first_, false) && TakesHeader(*line)) continue;
-    if (line_ < wanted_lines_.first) continue;
-    ++lines_with_cells_;
-    SCANCAL_RETURN_IF_ERROR(ReadLine(*line, batch));
+  Result<void> ReadHeader() {
+    SCANCAL_ASSIGN_OR_RETURN(const std::string_view row, text_.Peek());
+    if (row.empty()) return NoPoints(format_, text_.line());
+    std::vector<std::string> header = SplitCells(row);
+    text_.Skip();
+    if (IsWithoutNames(header))
+      return Error{text_.Place() + ": found numbers, expected a header line with the names of the columns" +
+                   text_.WrongSeparator()};
+    auto chosen = ChooseColumns(format_, header, text_.Place());
+    if (!chosen.ok()) return Error{chosen.error().message + text_.WrongSeparator(), chosen.error().kind};
+    columns_ = *std::move(chosen);
+    std::vector<ExpectedCells> cells(header.size());
+    for (const ChosenColumn& column : columns_) cells[column.index] = {Cells::kNumberOrNothing, column.name};
+    text_.Expect(std::move(cells), std::move(header), CellCount::kLast);
+    KeepLines();
+    return {};
   }
-  if (lines_with_cells_ == 0) return NoPoints(format_, line_);
-  return batch->size() > 0;
-}
 
-// A header is told by the angle's cell: a name, no number. Units in names ("angle_rad", "y_um") win.
-bool WideReader::TakesHeader(std::string_view line) {
-  const std::vector<CsvField> cells = SplitCells(line);
-  const auto angle = static_cast<size_t>(layout_.angle_column - 1),
-             first = static_cast<size_t>(layout_.first_column - 1);
-  if (angle >= cells.size() || ParseNumber(cells[angle].text).kind != NumberKind::kText) return false;
-  const auto initial = static_cast<unsigned char>(cells[angle].text.front());
-  if (initial < 0x80 && std::isalpha(initial) == 0) return false;  // a broken number like 12.3.4 is no name
-  angle_factor_ = MatchColumn(ColumnOf(format_, "angle"), cells[angle].text, format_.units).value_or(angle_factor_);
-  if (first < cells.size()) {
-    const ScanColumn value = ColumnOf(format_, layout_.value);
-    value_factor_ = MatchColumn(value, cells[first].text, format_.units).value_or(value_factor_);
-  }
-  return true;
-}
-
-Result<void> WideReader::ReadLine(std::string_view line, ScanBatch* batch) {
-  ParsedNumber angle;
-  SCANCAL_RETURN_IF_ERROR(ReadCells(line, &angle));
-  SCANCAL_RETURN_IF_ERROR(CheckCellCount(line));
-  const bool angle_missing = angle.kind == NumberKind::kMissing || angle.value == invalid_;
-  for (size_t i = 0; i < values_.size(); ++i) {
-    if (angle_missing || std::isnan(values_[i])) {
-      ++missing_;
-      continue;
+  Result<bool> Next(ScanBatch* batch) override {
+    batch->names.clear();
+    for (const ChosenColumn& column : columns_) batch->names.push_back(column.name);
+    batch->columns.resize(columns_.size());
+    std::vector<double*> targets;
+    for (std::vector<double>& column : batch->columns) {
+      column.resize(kBatchPoints);
+      targets.push_back(column.data());
     }
-    batch->columns[0].push_back(angle.value * angle_factor_);
-    batch->columns[1].push_back((layout_.start + layout_.step * static_cast<double>(i)) * across_factor_);
-    batch->columns[2].push_back(values_[i] * value_factor_);
-    batch->columns[3].push_back(static_cast<double>(line_));
-  }
-  return {};
-}
-
-// The angle and values_ of a line, which is followed by '\n'.
-Result<void> WideReader::ReadCells(std::string_view line, ParsedNumber* angle) {
-  const char* const line_end = line.data() + line.size();
-  const char* at = line.data();
-  values_.clear();
-  for (int column = 1;; ++column, ++at) {
-    const char* const cell = at;
-    ParsedNumber number;
-    if (column == layout_.angle_column) {
-      at = ReadCell(cell, line_end, angle_parser_, angle);
-      if (angle->kind > NumberKind::kMissing) return WrongCsvCell(Place(), line, cell, "angle", angle->kind);
-    } else if (column >= layout_.first_column) {
-      at = ReadCell(cell, line_end, value_parser_, &number);
-      if (number.kind > NumberKind::kMissing) return WrongCsvCell(Place(), line, cell, layout_.value, number.kind);
-      const bool missing = number.kind == NumberKind::kMissing || number.value == invalid_;
-      values_.push_back(missing ? std::numeric_limits<double>::quiet_NaN() : number.value);
-    } else {
-      at = SkipCell(cell);
+    size_t points = 0;
+    while (points < kBatchPoints) {
+      SCANCAL_ASSIGN_OR_RETURN(const bool more, text_.Next());
+      if (!more) break;
+      bool missing = false;
+      for (size_t k = 0; k < columns_.size(); ++k) {
+        const double number = text_.Number(columns_[k].index);
+        missing |= IsMissing(number);
+        targets[k][points] = number * columns_[k].factor;
+      }
+      if (missing) ++missing_;
+      else ++points;
     }
-    if (*at == '\n') return {};
+    for (std::vector<double>& column : batch->columns) column.resize(points);
+    return Taken(points);
   }
-}
 
-Result<void> WideReader::CheckCellCount(std::string_view line) {
-  if (cells_ == 0) cells_ = values_.size();
-  if (cells_ == values_.size() && cells_ > 0) return {};
-  const std::string found = Place() + ": found " + std::to_string(values_.size()) + " cells from column " +
-                            std::to_string(layout_.first_column) + " on, expected ";
-  if (cells_ == 0) return Error{found + "at least one" + WrongSeparator(line)};
-  SCANCAL_ASSIGN_OR_RETURN(const bool more, text_.Fill());
-  const bool cut = values_.size() < cells_ && !more;
-  return Error{found + std::to_string(cells_) + " as before" + (cut ? "; the file is probably cut off here" : "")};
-}
+ private:
+  std::vector<ChosenColumn> columns_;
+};
 
-}  // namespace
+// A profile per line.
+class WideReader : public CsvReader {
+ public:
+  WideReader(const ScanFormat& format, DelimitedText text)
+      : CsvReader(format, std::move(text)),
+        layout_(*format.layout),
+        angle_(static_cast<size_t>(layout_.angle_column - 1)),
+        first_(static_cast<size_t>(layout_.first_column - 1)),
+        angle_factor_(format.units.Of(ColumnOf("angle").dimension)),
+        across_factor_(format.units.Of(ColumnOf(layout_.across).dimension)),
+        value_factor_(format.units.Of(ColumnOf(layout_.value).dimension)) {}
 
-Result<std::unique_ptr<ScanReader>> OpenCsv(const ScanFormat& format) {
-  SCANCAL_ASSIGN_OR_RETURN(TextLines text, TextLines::Open(format.path));
-  auto reader = std::make_unique<CsvReader>(format, std::move(text));
+  Result<void> ReadHeader() {
+    if (layout_.angle_column < 1 || layout_.angle_column >= layout_.first_column)
+      return Error{text_.name() + ": layout: found angle_column: " + std::to_string(layout_.angle_column) +
+                   ", first_column: " + std::to_string(layout_.first_column) +
+                   ", expected the column of the angle, counted from 1, before the first cell"};
+    SCANCAL_ASSIGN_OR_RETURN(std::string_view row, text_.Peek());
+    const std::vector<std::string> header = SplitCells(row);
+    if (IsHeader(header)) {  // units in names ("angle_rad", "y_um") win
+      const Units& units = format_.units;
+      angle_factor_ = MatchColumn(ColumnOf("angle"), header[angle_], units).value_or(angle_factor_);
+      if (first_ < header.size())
+        value_factor_ = MatchColumn(ColumnOf(layout_.value), header[first_], units).value_or(value_factor_);
+      text_.Skip();
+    }
+    KeepLines();
+    SCANCAL_ASSIGN_OR_RETURN(row, text_.Peek());
+    // Up to the first cell, or as many as this row can have: if that is fewer it is refused.
+    std::vector<ExpectedCells> cells(std::min(first_, row.size()) + 1);
+    cells.back() = {Cells::kNumberOrNothing, layout_.value};
+    if (angle_ < cells.size()) cells[angle_] = {Cells::kNumberOrNothing, "angle"};
+    text_.Expect(std::move(cells), {}, CellCount::kAny);
+    return {};
+  }
+
+  Result<bool> Next(ScanBatch* batch) override {
+    batch->names = {"angle", layout_.across, layout_.value, "profile"};
+    batch->columns.resize(batch->names.size());
+    for (std::vector<double>& column : batch->columns) column.clear();
+    size_t points = 0;
+    while (points < kBatchPoints) {
+      SCANCAL_ASSIGN_OR_RETURN(const bool more, text_.Next());
+      if (!more) break;
+      SCANCAL_RETURN_IF_ERROR(CheckCellCount());
+      const size_t most = points + cells_ - first_;
+      double* targets[4];
+      for (size_t i = 0; i < 4; ++i) {
+        batch->columns[i].resize(most);
+        targets[i] = batch->columns[i].data();
+      }
+      const double angle = text_.Number(angle_), profile = static_cast<double>(text_.line());
+      const bool no_angle = IsMissing(angle);
+      for (size_t k = first_; k < cells_; ++k) {
+        const double value = text_.Number(k);
+        targets[0][points] = angle * angle_factor_;
+        targets[1][points] = (layout_.start + layout_.step * static_cast<double>(k - first_)) * across_factor_;
+        targets[2][points] = value * value_factor_;
+        targets[3][points] = profile;
+        if (!no_angle && !IsMissing(value)) ++points;
+      }
+      missing_ += static_cast<int64_t>(most - points);
+    }
+    for (std::vector<double>& column : batch->columns) column.resize(points);
+    return Taken(points);
+  }
+
+ private:
+  // The column as the model wants it; if it did not say, what the data set's format fixes: bearings are angles, y, z
+  // and range are lengths.
+  ScanColumn ColumnOf(const std::string& name) const {
+    for (const ScanColumn& column : format_.columns) {
+      if (column.name == name) return column;
+    }
+    const bool angle = name == "angle" || name == "bearing";
+    return {.name = name, .dimension = angle ? Dimension::kAngle : Dimension::kLength};
+  }
+
+  Result<void> CheckCellCount() {
+    const size_t cells = std::max(text_.cells(), first_);
+    if (cells_ == 0) cells_ = cells;
+    if (cells_ == cells && cells_ > first_) return {};
+    const std::string found = text_.Place() + ": found " + std::to_string(cells - first_) + " cells from column " +
+                              std::to_string(layout_.first_column) + " on, expected ";
+    if (cells_ == first_) return Error{found + "at least one" + text_.WrongSeparator()};
+    return Error{found + std::to_string(cells_ - first_) + " as before" + (cells < cells_ ? text_.CutOff() : "")};
+  }
+
+  // A header is told by the angle's cell: a name, no number.
+  bool IsHeader(const std::vector<std::string>& row) const {
+    if (angle_ >= row.size() || ParseNumber(row[angle_]).kind != NumberKind::kText) return false;
+    const auto initial = static_cast<unsigned char>(row[angle_].front());
+    return initial >= 0x80 || std::isalpha(initial) != 0;  // a broken number like 12.3.4 is no name
+  }
+
+  const WideLayout layout_;
+  size_t angle_, first_;  // columns, 0-based
+  double angle_factor_, across_factor_, value_factor_;
+  size_t cells_ = 0;  // of every row
+};
+
+template <class Reader>
+Result<std::unique_ptr<ScanReader>> OpenAs(const ScanFormat& format) {
+  SCANCAL_ASSIGN_OR_RETURN(DelimitedText text, DelimitedText::Open(format.path));
+  auto reader = std::make_unique<Reader>(format, std::move(text));
   SCANCAL_RETURN_IF_ERROR(reader->ReadHeader());
   return std::unique_ptr<ScanReader>(std::move(reader));
 }
 
-Result<std::unique_ptr<ScanReader>> OpenWideCsv(const ScanFormat& format) {
-  SCANCAL_ASSIGN_OR_RETURN(TextLines text, TextLines::Open(format.path));
-  auto reader = std::make_unique<WideReader>(format, std::move(text));
-  SCANCAL_RETURN_IF_ERROR(reader->CheckLayout());
-  return std::unique_ptr<ScanReader>(std::move(reader));
-}
+}  // namespace
+
+Result<std::unique_ptr<ScanReader>> OpenCsv(const ScanFormat& format) { return OpenAs<LongReader>(format); }
+Result<std::unique_ptr<ScanReader>> OpenWideCsv(const ScanFormat& format) { return OpenAs<WideReader>(format); }
 
 }  // namespace scancal

@@ -5,12 +5,11 @@
 #include <string>
 #include <string_view>
 #include <vector>
+#include "io/delimited.h"
 #include "io/result.h"
 #include "io/units.h"
 
 namespace scancal {
-
-enum class Cells { kText, kNumber, kNumberOrNothing };  // nothing: empty or nan, reads as nan
 
 struct TableColumn {
   std::string name;  // "pose", "x"
@@ -28,7 +27,7 @@ class Table {
  public:
   // header: names of the columns of a file that has no header.
   static Result<Table> Read(const std::filesystem::path& path, const std::vector<TableColumn>& columns,
-                            const Units& units, const std::vector<std::string>& header = {});
+                            const Units& units, std::vector<std::string> header = {});
   size_t rows() const { return lines_.size(); }  // one or more
   bool Has(std::string_view column) const { return Find(column) != nullptr; }
   const std::string& Text(std::string_view column, size_t row) const { return At(column).texts[row]; }
@@ -47,7 +46,6 @@ class Table {
     std::vector<double> numbers;
     std::vector<uint32_t> starts;  // of the cells in their lines, in characters, 1-based
   };
-  friend class TableReader;
   const Column* Find(std::string_view column) const;  // nullptr: not in the file
   const Column& At(std::string_view column) const;    // CHECKs
 

@@ -1,242 +1,336 @@
 #include "io/yaml.h"
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 #include <utility>
 #include "io/message.h"
 #include "io/number.h"
-#include "io/yaml_tree.h"
 
 namespace scancal {
 
+struct YamlNode {
+  YAML::Node value;
+  YAML::Mark mark;
+  std::string trail;                   // names the node in messages: "targets: item 2: keep"
+  std::set<std::string> asked, taken;  // keys of a mapping that is read: somebody knows them, has read their value
+};
+
 struct YamlFile {
   std::string name;
-  YamlNode root;
-  YamlNode nothing;  // stands in for a mapping that is absent or wrong
+  std::map<int, YamlNode> opened;  // the mappings that somebody reads key by key, by their position
+  YamlNode nothing;                // stands in for a mapping that is absent or wrong
   std::optional<Error> error;
 };
 
 namespace {
 
-using Kind = YamlNode::Kind;
-
-std::string PlaceIn(const YamlFile& file, size_t line, size_t column) {
-  return file.name.empty() ? "" : file.name + ":" + std::to_string(line) + ":" + std::to_string(column) + ": ";
+std::string Joined(const std::string& first, const std::string& second) {
+  return first.empty() || second.empty() ? first + second : first + ": " + second;
 }
 
-std::string PlaceOf(const YamlFile& file, const YamlNode& node) {
-  return PlaceIn(file, node.line, node.column) + (node.trail.empty() ? "" : node.trail + ": ");
+std::string PlaceIn(const std::string& name, size_t line, size_t column) {
+  return name.empty() ? "" : name + ":" + std::to_string(line) + ":" + std::to_string(column);
 }
 
-std::vector<std::string> AskedKeys(const YamlNode& node) { return {node.asked.begin(), node.asked.end()}; }
+std::string PlaceIn(const std::string& name, const YAML::Mark& mark) {
+  const auto one_based = [](int position) { return static_cast<size_t>(std::max(position, 0)) + 1; };
+  return PlaceIn(name, one_based(mark.line), one_based(mark.column));
+}
 
-// The first key in the order of the file that stands in an opened mapping and was not taken.
-std::optional<Error> FindUnknownKey(const YamlFile& file, const YamlNode& node) {
-  for (size_t i = 0; i < node.children.size(); ++i) {
-    if (node.opened && !node.keys[i].taken) {
-      const YamlKey& key = node.keys[i];
-      const std::string trail = node.trail.empty() ? "" : node.trail + ": ";
-      return Error{PlaceIn(file, key.line, key.column) + trail + "unknown key '" + key.text + "'" +
-                   Suggestion(key.text, AskedKeys(node))};
-    }
-    if (auto error = FindUnknownKey(file, node.children[i])) return error;
-  }
+std::string Where(const YamlFile& file, const YamlNode& node) {
+  return Joined(PlaceIn(file.name, node.mark), node.trail);
+}
+
+// What was found, for messages.
+std::string Found(const YAML::Node& value) {
+  return value.IsMap()        ? "a mapping"
+         : value.IsSequence() ? "a list"
+         : value.IsNull()     ? "nothing"
+                              : Quoted(value.Scalar());
+}
+
+// yaml-cpp gives a null the place of what follows.
+YamlNode ValueOf(const YamlNode& map, const YAML::Node& key, const YAML::Node& value) {
+  return {value, value.IsNull() ? key.Mark() : value.Mark(), Joined(map.trail, key.Scalar()), {}, {}};
+}
+
+std::vector<YamlNode> ItemsOf(const YamlNode& list) {
+  std::vector<YamlNode> items;
+  for (const YAML::Node& item : list.value)
+    items.push_back({item, item.Mark(), Joined(list.trail, "item " + std::to_string(items.size() + 1)), {}, {}});
+  return items;
+}
+
+std::optional<YamlNode> Find(const YamlNode& map, std::string_view key) {
+  for (const auto& entry : map.value)
+    if (entry.first.Scalar() == key) return ValueOf(map, entry.first, entry.second);
   return std::nullopt;
 }
 
-nlohmann::json ToJson(const YamlNode& node) {
-  switch (node.kind) {
-    case Kind::kNothing:
-      return nullptr;
-    case Kind::kScalar: {
-      if (node.quoted) return node.text;
-      const auto value = nlohmann::json::parse(node.text, nullptr, /*allow_exceptions=*/false);
-      const bool kept = (value.is_number() || value.is_boolean()) && value.dump() == node.text;
-      return kept ? value : nlohmann::json(node.text);
-    }
-    case Kind::kList: {
-      auto list = nlohmann::json::array();
-      for (const YamlNode& item : node.children) list.push_back(ToJson(item));
-      return list;
-    }
-    case Kind::kMap: {
-      auto map = nlohmann::json::object();
-      for (size_t i = 0; i < node.keys.size(); ++i) map[node.keys[i].text] = ToJson(node.children[i]);
-      return map;
-    }
+// Thrown, the only way to stop yaml-cpp's parser, and caught in Load.
+struct NotForUs : YAML::Exception {
+  using Exception::Exception;
+};
+
+// Refuses what is YAML but not for us, in the order of the file and with its place. yaml-cpp's tree tells less: there
+// an alias is the node that it repeats, so that a short text may be a tree without end, and what stands behind the
+// first document is not read.
+class PlainDocument : public YAML::EventHandler {
+  using Mark = YAML::Mark;
+  using Tag = std::string;
+  using Anchor = YAML::anchor_t;
+  using Style = YAML::EmitterStyle::value;
+
+  void OnDocumentStart(const Mark& mark) override {
+    if (++documents_ > 1) throw NotForUs(mark, "found a second document, expected one");
   }
-  return nullptr;
+  void OnAlias(const Mark& mark, Anchor /*anchor*/) override {
+    throw NotForUs(mark, "found an alias, expected the value itself");
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const Mark& mark, Anchor /*anchor*/) override { Take(mark, nullptr, "nothing"); }
+  void OnScalar(const Mark& mark, const Tag& /*tag*/, Anchor /*anchor*/, const std::string& text) override {
+    Take(mark, &text, "");
+  }
+  void OnSequenceStart(const Mark& mark, const Tag& /*tag*/, Anchor /*anchor*/, Style /*style*/) override {
+    Take(mark, nullptr, "a list");
+    open_.emplace_back();
+  }
+  void OnSequenceEnd() override { open_.pop_back(); }
+  void OnMapStart(const Mark& mark, const Tag& /*tag*/, Anchor /*anchor*/, Style /*style*/) override {
+    Take(mark, nullptr, "a mapping");
+    open_.push_back({.is_map = true, .expects_key = true, .lines = {}});
+  }
+  void OnMapEnd() override { open_.pop_back(); }
+
+  // The next node: as a key of a mapping it is a scalar and stands once.
+  void Take(const Mark& mark, const std::string* scalar, const std::string& found) {
+    if (open_.empty() || !open_.back().is_map) return;
+    Open& map = open_.back();
+    map.expects_key = !map.expects_key;
+    if (map.expects_key) return;  // it is a value
+    if (scalar == nullptr) throw NotForUs(mark, "found " + found + ", expected a key");
+    const auto [first, is_new] = map.lines.emplace(*scalar, mark.line + 1);
+    if (!is_new)
+      throw NotForUs(
+          mark, "the key '" + *scalar + "' stands here a second time, first in line " + std::to_string(first->second));
+  }
+
+  struct Open {  // a mapping or a list
+    bool is_map = false, expects_key = false;
+    std::map<std::string, int> lines;  // of the keys
+  };
+  std::vector<Open> open_;
+  int documents_ = 0;
+};
+
+Result<YAML::Node> Load(std::string_view text, const std::string& name) {
+  text = WithoutByteOrderMark(text);
+  if (const auto offset = FirstInvalidUtf8(text)) {
+    const TextPlace place = PlaceOf(text, *offset);
+    return Error{PlaceIn(name, place.line, place.column) +
+                 ": found a byte that is not UTF-8; save the file as UTF-8 text"};
+  }
+  try {
+    std::istringstream stream{std::string(text)};
+    YAML::Parser parser(stream);
+    PlainDocument document;
+    while (parser.HandleNextDocument(document)) {
+    }
+    return YAML::Load(std::string(text));
+  } catch (const NotForUs& complaint) {
+    return Error{PlaceIn(name, complaint.mark) + ": " + complaint.msg};
+  } catch (const YAML::Exception& exception) {
+    return Error{PlaceIn(name, exception.mark) + ": not YAML: " + exception.msg};
+  }
+}
+
+// Complaints about the stand-in would only follow from an earlier one.
+void Remember(YamlFile& file, const YamlNode& node, const std::string& complaint) {
+  if (!file.error && &node != &file.nothing) file.error = Error{Joined(Where(file, node), complaint)};
+}
+
+void RememberFound(YamlFile& file, const YamlNode& node, const std::string& expected) {
+  Remember(file, node, "found " + Found(node.value) + ", expected " + expected);
+}
+
+std::vector<std::string> KeysOf(const YamlNode& map) {
+  std::vector<std::string> keys;
+  for (const auto& entry : map.value) keys.push_back(entry.first.Scalar());
+  return keys;
+}
+
+std::optional<YamlNode> Take(YamlNode& map, std::string_view key) {
+  map.asked.emplace(key);
+  map.taken.emplace(key);
+  return Find(map, key);
+}
+
+std::optional<YamlNode> Need(YamlFile& file, YamlNode& map, std::string_view key, const std::string& expected) {
+  auto value = Take(map, key);
+  if (value) return value;
+  std::vector<std::string> untaken = KeysOf(map);
+  std::erase_if(untaken, [&](const std::string& candidate) { return map.taken.contains(candidate); });
+  const std::string nearest = Nearest(key, untaken);
+  Remember(file, map,
+           "the key '" + std::string(key) + "' is missing, expected " + expected +
+               (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+  return value;
+}
+
+std::string ToText(YamlFile& file, const YamlNode& node) {
+  if (node.value.IsScalar()) return node.value.Scalar();
+  RememberFound(file, node, "text");
+  return "";
+}
+
+double ToNumber(YamlFile& file, const YamlNode& node) {
+  const ParsedNumber number =
+      node.value.IsScalar() ? ParseNumber(node.value.Scalar()) : ParsedNumber{NumberKind::kText, 0};
+  if (number.kind == NumberKind::kNumber) return number.value;
+  RememberFound(file, node, number.kind == NumberKind::kText ? "a number" : "a finite number");
+  return 0;
+}
+
+nlohmann::json ToJson(const YAML::Node& node) {
+  if (node.IsNull()) return nullptr;
+  if (node.IsScalar()) {
+    const std::string& text = node.Scalar();
+    if (node.Tag() == "!") return text;  // it stands in quotes
+    const auto value = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+    const bool kept = (value.is_number() || value.is_boolean()) && value.dump() == text;
+    return kept ? value : nlohmann::json(text);
+  }
+  nlohmann::json json = node.IsMap() ? nlohmann::json::object() : nlohmann::json::array();
+  for (const auto& item : node) {
+    if (node.IsMap()) json[item.first.Scalar()] = ToJson(item.second);
+    else json.push_back(ToJson(item));
+  }
+  return json;
 }
 
 }  // namespace
 
-YamlMap::YamlMap() : file_(std::make_shared<YamlFile>()), node_(&file_->root) { node_->kind = Kind::kMap; }
+YamlMap::YamlMap() : file_(std::make_shared<YamlFile>()), node_(&file_->nothing) {}
 
-YamlMap::YamlMap(std::shared_ptr<YamlFile> file, YamlNode* node) : file_(std::move(file)), node_(node) {
-  node_->opened = true;
-}
+YamlMap::YamlMap(std::shared_ptr<YamlFile> file, YamlNode* node) : file_(std::move(file)), node_(node) {}
 
 Result<YamlMap> YamlMap::Parse(std::string_view text, const std::string& name) {
-  SCANCAL_ASSIGN_OR_RETURN(YamlNode root, ParseYaml(text, name));
-  if (root.kind == Kind::kNothing) return Error{name + ": the file is empty, expected \"key: value\" lines"};
+  SCANCAL_ASSIGN_OR_RETURN(const YAML::Node root, Load(text, name));
+  if (root.IsNull()) return Error{name + ": the file is empty, expected \"key: value\" lines"};
+  if (!root.IsMap())
+    return Error{PlaceIn(name, root.Mark()) + ": found " + Found(root) + ", expected \"key: value\" lines"};
   auto file = std::make_shared<YamlFile>();
   file->name = name;
-  file->root = std::move(root);
-  file->nothing.kind = Kind::kMap;
-  if (file->root.kind != Kind::kMap) {
-    return Error{PlaceOf(*file, file->root) + "found " + file->root.Found() + ", expected \"key: value\" lines"};
-  }
-  YamlNode* const node = &file->root;
-  return YamlMap(std::move(file), node);
+  return Open(file, {root, root.Mark(), "", {}, {}});
+}
+
+YamlMap YamlMap::Open(const std::shared_ptr<YamlFile>& file, YamlNode map) {
+  const int position = map.mark.pos;
+  return {file, &file->opened.emplace(position, std::move(map)).first->second};
 }
 
 bool YamlMap::Has(std::string_view key) const {
   node_->asked.emplace(key);
-  return node_->Find(key) != nullptr;
+  return Find(*node_, key).has_value();
 }
 
-std::vector<std::string> YamlMap::Keys() const {
-  std::vector<std::string> keys;
-  for (const YamlKey& key : node_->keys) keys.push_back(key.text);
-  return keys;
-}
+std::vector<std::string> YamlMap::Keys() const { return KeysOf(*node_); }
 
 bool YamlMap::IsMap(std::string_view key) const {
-  const YamlNode* const value = node_->Find(key);
-  return value != nullptr && value->kind == Kind::kMap;
+  const auto value = Find(*node_, key);
+  return value && value->value.IsMap();
 }
 
 bool YamlMap::IsNumber(std::string_view key) const {
-  const YamlNode* const value = node_->Find(key);
-  return value != nullptr && value->kind == Kind::kScalar && ParseNumber(value->text).kind == NumberKind::kNumber;
-}
-
-YamlNode* YamlMap::Take(std::string_view key) {
-  node_->asked.emplace(key);
-  for (YamlKey& candidate : node_->keys) {
-    if (candidate.text == key) candidate.taken = true;
-  }
-  return node_->Find(key);
-}
-
-YamlNode* YamlMap::Need(std::string_view key, std::string_view expected) {
-  YamlNode* const value = Take(key);
-  if (value == nullptr) {
-    std::vector<std::string> untaken;
-    for (const YamlKey& candidate : node_->keys) {
-      if (!candidate.taken) untaken.push_back(candidate.text);
-    }
-    const std::string nearest = Nearest(key, untaken);
-    Remember(*node_, "the key '" + std::string(key) + "' is missing, expected " + std::string(expected) +
-                         (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
-  }
-  return value;
-}
-
-void YamlMap::Remember(const YamlNode& node, const std::string& complaint) {
-  // Complaints about the stand-in would only follow from an earlier one.
-  if (!file_->error && &node != &file_->nothing) file_->error = Error{PlaceOf(*file_, node) + complaint};
-}
-
-YamlMap YamlMap::Nothing() const { return {file_, &file_->nothing}; }
-
-std::string YamlMap::ToText(const YamlNode& node) {
-  if (node.kind == Kind::kScalar) return node.text;
-  Remember(node, "found " + node.Found() + ", expected text");
-  return "";
-}
-
-double YamlMap::ToNumber(const YamlNode& node) {
-  const ParsedNumber number = node.kind == Kind::kScalar ? ParseNumber(node.text) : ParsedNumber{NumberKind::kText, 0};
-  if (number.kind == NumberKind::kNumber) return number.value;
-  Remember(node,
-           "found " + node.Found() + ", expected a " + (number.kind == NumberKind::kText ? "" : "finite ") + "number");
-  return 0;
+  const auto value = Find(*node_, key);
+  return value && value->value.IsScalar() && ParseNumber(value->value.Scalar()).kind == NumberKind::kNumber;
 }
 
 std::string YamlMap::Text(std::string_view key, std::optional<std::string> otherwise) {
-  const YamlNode* const value = otherwise ? Take(key) : Need(key, "text");
-  return value != nullptr ? ToText(*value) : std::move(otherwise).value_or("");
+  const auto value = otherwise ? Take(*node_, key) : Need(*file_, *node_, key, "text");
+  return value ? ToText(*file_, *value) : std::move(otherwise).value_or("");
 }
 
 double YamlMap::Number(std::string_view key, std::optional<double> otherwise) {
-  const YamlNode* const value = otherwise ? Take(key) : Need(key, "a number");
-  return value != nullptr ? ToNumber(*value) : otherwise.value_or(0);
+  const auto value = otherwise ? Take(*node_, key) : Need(*file_, *node_, key, "a number");
+  return value ? ToNumber(*file_, *value) : otherwise.value_or(0);
 }
 
 std::vector<std::string> YamlMap::Texts(std::string_view key) {
   std::vector<std::string> texts;
-  const YamlNode* const value = Need(key, "a list of texts");
-  if (value == nullptr) return texts;
-  if (value->kind != Kind::kList) Remember(*value, "found " + value->Found() + ", expected a list of texts");
-  if (value->kind == Kind::kList) {
-    for (const YamlNode& item : value->children) texts.push_back(ToText(item));
-  }
+  const auto value = Need(*file_, *node_, key, "a list of texts");
+  if (!value) return texts;
+  if (!value->value.IsSequence()) RememberFound(*file_, *value, "a list of texts");
+  else
+    for (const YamlNode& item : ItemsOf(*value)) texts.push_back(ToText(*file_, item));
   return texts;
 }
 
 std::array<double, 2> YamlMap::Interval(std::string_view key) {
-  constexpr std::string_view kExpected = "an interval [lower, upper]";
+  const std::string expected = "an interval [lower, upper]";
   constexpr std::array<double, 2> kHarmless = {0, 1};
-  const YamlNode* const value = Need(key, kExpected);
-  if (value == nullptr) return kHarmless;
-  if (value->kind != Kind::kList || value->children.size() != 2) {
-    const bool is_list = value->kind == Kind::kList;
-    Remember(*value, "found " + (is_list ? "a list of " + std::to_string(value->children.size()) : value->Found()) +
-                         ", expected " + std::string(kExpected));
+  const auto value = Need(*file_, *node_, key, expected);
+  if (!value) return kHarmless;
+  if (!value->value.IsSequence()) {
+    RememberFound(*file_, *value, expected);
     return kHarmless;
   }
-  const std::array<double, 2> interval = {ToNumber(value->children[0]), ToNumber(value->children[1])};
+  const std::vector<YamlNode> items = ItemsOf(*value);
+  if (items.size() != 2) {
+    Remember(*file_, *value, "found a list of " + std::to_string(items.size()) + ", expected " + expected);
+    return kHarmless;
+  }
+  const std::array<double, 2> interval = {ToNumber(*file_, items[0]), ToNumber(*file_, items[1])};
   if (interval[0] < interval[1]) return interval;
-  Remember(*value, "found [" + value->children[0].text + ", " + value->children[1].text +
-                       "], expected the lower bound first and a larger upper bound");
+  Remember(*file_, *value,
+           "found [" + items[0].value.Scalar() + ", " + items[1].value.Scalar() +
+               "], expected the lower bound first and a larger upper bound");
   return kHarmless;
 }
 
 YamlMap YamlMap::Map(std::string_view key) {
-  YamlNode* const value = Need(key, "a mapping");
-  if (value == nullptr) return Nothing();
-  if (value->kind == Kind::kMap) return {file_, value};
-  Remember(*value, "found " + value->Found() + ", expected a mapping");
-  return Nothing();
+  auto value = Need(*file_, *node_, key, "a mapping");
+  if (value && value->value.IsMap()) return Open(file_, *std::move(value));
+  if (value) RememberFound(*file_, *value, "a mapping");
+  return {file_, &file_->nothing};
 }
 
 std::vector<YamlMap> YamlMap::Maps(std::string_view key) {
   std::vector<YamlMap> maps;
-  YamlNode* const value = Need(key, "a list of mappings");
-  if (value == nullptr) return maps;
-  if (value->kind != Kind::kList) {
-    Remember(*value, "found " + value->Found() + ", expected a list of mappings");
+  const auto value = Need(*file_, *node_, key, "a list of mappings");
+  if (!value) return maps;
+  if (!value->value.IsSequence()) {
+    RememberFound(*file_, *value, "a list of mappings");
     return maps;
   }
-  for (YamlNode& item : value->children) {
-    if (item.kind == Kind::kMap) {
-      maps.push_back(YamlMap(file_, &item));
-    } else {
-      Remember(item, "found " + item.Found() + ", expected a mapping");
-      maps.push_back(Nothing());
-    }
+  for (const YamlNode& item : ItemsOf(*value)) {
+    if (!item.value.IsMap()) RememberFound(*file_, item, "a mapping");
+    maps.push_back(item.value.IsMap() ? Open(file_, item) : YamlMap(file_, &file_->nothing));
   }
   return maps;
 }
 
 nlohmann::json YamlMap::Json(std::string_view key) {
-  const YamlNode* const value = Take(key);
-  return value != nullptr ? ToJson(*value) : nlohmann::json();
+  const auto value = Take(*node_, key);
+  return value ? ToJson(value->value) : nlohmann::json();
 }
 
 void YamlMap::Fail(std::string_view key, const std::string& complaint) {
-  const YamlNode* const value = key.empty() ? nullptr : node_->Find(key);
-  const bool shows_found = value != nullptr && complaint.starts_with("expected");
-  if (!file_->error) {
-    file_->error = Error{Where(key) + ": " + (shows_found ? "found " + value->Found() + ", " : "") + complaint};
-  }
+  const auto value = key.empty() ? std::nullopt : Find(*node_, key);
+  const bool shows_found = value && complaint.starts_with("expected");
+  if (!file_->error)
+    file_->error = Error{Where(key) + ": " + (shows_found ? "found " + Found(value->value) + ", " : "") + complaint};
 }
 
 std::string YamlMap::Where(std::string_view key) const {
-  const YamlNode* const value = key.empty() ? nullptr : node_->Find(key);
-  std::string where = PlaceOf(*file_, value != nullptr ? *value : *node_);
-  if (value == nullptr && !key.empty()) return where + std::string(key);  // absent: where it belongs
-  where.resize(where.size() - std::min<size_t>(where.size(), 2));         // without the last ": "
-  return where;
+  const auto value = key.empty() ? std::nullopt : Find(*node_, key);
+  // An absent one: where it belongs.
+  return value ? scancal::Where(*file_, *value) : Joined(scancal::Where(*file_, *node_), std::string(key));
 }
 
 Result<void> YamlMap::Check() const {
@@ -246,8 +340,18 @@ Result<void> YamlMap::Check() const {
 
 Result<void> YamlMap::Finish() const {
   SCANCAL_RETURN_IF_ERROR(Check());
-  if (auto unknown = FindUnknownKey(*file_, file_->root)) return *unknown;
-  return {};
+  const YamlNode* map = nullptr;
+  std::optional<YAML::Node> unknown;  // the first one in the order of the file
+  for (const auto& [position, opened] : file_->opened)
+    for (const auto& entry : opened.value) {
+      const YAML::Node& key = entry.first;
+      if (opened.taken.contains(key.Scalar()) || (unknown && unknown->Mark().pos < key.Mark().pos)) continue;
+      map = &opened;
+      unknown.emplace(key);
+    }
+  if (!unknown) return {};
+  return Error{Joined(PlaceIn(file_->name, unknown->Mark()), map->trail) + ": unknown key '" + unknown->Scalar() + "'" +
+               Suggestion(unknown->Scalar(), {map->asked.begin(), map->asked.end()})};
 }
 
 }  // namespace scancal

@@ -22,7 +22,8 @@ struct YamlNode;
 class YamlMap {
  public:
   YamlMap();  // of no file, without keys
-  // BOM and CRLF are fine; empty, a list: errors. name: for messages.
+  // BOM and CRLF are fine. Errors: empty, a list, a key that stands twice, an alias, a second document, text that is
+  // not UTF-8. name: for messages.
   static Result<YamlMap> Parse(std::string_view text, const std::string& name);
   bool Has(std::string_view key) const;   // does not take the key
   std::vector<std::string> Keys() const;  // in the order of the file
@@ -46,12 +47,7 @@ class YamlMap {
 
  private:
   YamlMap(std::shared_ptr<YamlFile> file, YamlNode* node);
-  YamlNode* Take(std::string_view key);  // its value, or nullptr
-  YamlNode* Need(std::string_view key, std::string_view expected);
-  void Remember(const YamlNode& node, const std::string& complaint);
-  double ToNumber(const YamlNode& node);
-  std::string ToText(const YamlNode& node);
-  YamlMap Nothing() const;  // the harmless one
+  static YamlMap Open(const std::shared_ptr<YamlFile>& file, YamlNode map);
 
   std::shared_ptr<YamlFile> file_;
   YamlNode* node_;  // lives in file_

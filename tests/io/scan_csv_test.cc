@@ -103,6 +103,12 @@ TEST_F(ScanCsvTest, QuotedTextInIgnoredColumnsMayHoldCommas) {
   EXPECT_THAT(scan.columns[1], ElementsAre(2));
 }
 
+TEST_F(ScanCsvTest, AQuoteBehindABlankIsPartOfAnIgnoredCell) {
+  const Scan scan = Read("note,angle,y,z\n \"a,1, \"2\",3\n");
+  EXPECT_THAT(scan.error, IsEmpty());
+  EXPECT_THAT(scan.columns[1], ElementsAre(2));
+}
+
 TEST_F(ScanCsvTest, KeepsOnlyTheWantedLinesOfTheFile) {
   ScanFormat format = Format("# comment\nangle,y,z\n1,3,0\n1,4,0\n\n1,6,0\nbroken\n");
   format.lines = {4, 6};
@@ -200,6 +206,10 @@ TEST_F(ScanCsvTest, ATruncatedLastLineIsAnError) {
 
 TEST_F(ScanCsvTest, TooFewCellsAreAnError) {
   EXPECT_EQ(Read("angle,y,z\n1\n1,2,3\n").error, Place(":2: found 1 cell, expected 3 (angle, y, z)"));
+}
+
+TEST_F(ScanCsvTest, AWrongCellIsToldBeforeTheNumberOfCells) {
+  EXPECT_EQ(Read("angle,y_m,z\n1,x\n").error, Place(":2:3: y: found \"x\", expected a number"));
 }
 
 TEST_F(ScanCsvTest, TooManyCellsAreAnError) {

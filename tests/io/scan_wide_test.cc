@@ -118,6 +118,17 @@ TEST_F(ScanWideTest, DifferentNumbersOfCellsAreAnError) {
   EXPECT_EQ(Read("0,1,2,3\n0,1,2,3,4\n").error, Place(":2: found 3 cells from column 3 on, expected 2 as before"));
 }
 
+TEST_F(ScanWideTest, AWrongCellIsToldBeforeTheNumberOfCells) {
+  EXPECT_EQ(Read("0,1,2,3\n0,1,2,3,x\n").error, Place(":2:9: y: found \"x\", expected a number"));
+  EXPECT_EQ(Read("0,1,2,3\n0,1,x\n").error, Place(":2:5: y: found \"x\", expected a number"));
+}
+
+TEST_F(ScanWideTest, AQuoteBehindABlankIsPartOfAnIgnoredCell) {
+  const Scan scan = Read(" \"t,90,7,8\n \"t, 180, \"1\",2\n\"t, u\",90,3,4\n");
+  EXPECT_THAT(scan.error, IsEmpty());
+  EXPECT_THAT(scan.columns[2], ElementsAre(7, 8, 1, 2, 3, 4));
+}
+
 TEST_F(ScanWideTest, ATruncatedLastLineIsAnError) {
   EXPECT_EQ(Read("0,1,2,3\n0,1,2").error,
             Place(":2: found 1 cells from column 3 on, expected 2 as before; the file is probably cut off here"));
@@ -125,6 +136,9 @@ TEST_F(ScanWideTest, ATruncatedLastLineIsAnError) {
 
 TEST_F(ScanWideTest, NoCellsAtAllAreAnError) {
   EXPECT_EQ(Read("0,1\n").error, Place(":1: found 0 cells from column 3 on, expected at least one"));
+  ScanFormat format = Format("0,1,2,3\n");
+  format.layout->first_column = 1'000'000'000;
+  EXPECT_EQ(ReadAll(format).error, Place(":1: found 0 cells from column 1000000000 on, expected at least one"));
 }
 
 TEST_F(ScanWideTest, SemicolonsAreAnErrorThatSaysSo) {

@@ -83,6 +83,14 @@ TEST_F(TableTest, ADoubledQuoteIsOne) {
   EXPECT_THAT(Error("ball,\"say \"\"x\"\"\"\nA,1\n"), HasSubstr("found the columns ball, say \"x\", expected"));
 }
 
+TEST_F(TableTest, AQuoteBehindABlankHoldsCommas) {
+  const auto table = Read("other,ball,x\n \"a, b\", \"A, 1\",1\n,B,2\n");
+  ASSERT_TRUE(table.ok()) << table.error().message;
+  EXPECT_THAT(table->Texts("ball"), ElementsAre("A, 1", "B"));
+  EXPECT_THAT(table->Wrong(0, "x", "w").message, EndsWith("t.csv:2:17: x: w"));
+  EXPECT_THAT(Error("ball,x_m\nA,y\n"), EndsWith("t.csv:2:3: x: found \"y\", expected a number"));
+}
+
 TEST_F(TableTest, PlacesCountCharacters) {
   const auto table = Read("note,ball,x\ngrün, A,1\nrot,B,2\n");
   EXPECT_THAT(table->Wrong(0, "ball", "no such ball").message, EndsWith("t.csv:2:7: ball: no such ball"));
@@ -111,6 +119,8 @@ TEST_F(TableTest, EveryLineHasAsManyCells) {
   EXPECT_THAT(Error("ball,x\nA,1\nB\n"), EndsWith("t.csv:3: found 1 cell, expected 2 (ball, x)"));
   EXPECT_THAT(Error("ball,x\nA,1,2\n"), EndsWith("t.csv:2: found 3 cells, expected 2 (ball, x)"));
   EXPECT_THAT(Error("ball,x,note\nA,\n"), HasSubstr("t.csv:2: found 2 cells, expected 3"));
+  EXPECT_THAT(Error("ball,x,note\nA,1.2.3\n"), EndsWith("t.csv:2: found 2 cells, expected 3 (ball, x, note)"));
+  EXPECT_THAT(Error("ball,x,note\n,1\n"), EndsWith("t.csv:2:1: ball: the cell is empty, expected text"));
   EXPECT_THAT(Error("ball,x\nA;1\n"), HasSubstr("separated by semicolons"));
 }
 

@@ -200,12 +200,45 @@ TEST_F(YamlTest, SyntaxErrorsHaveAPlace) {
 
 TEST_F(YamlTest, WhatNeedsAnotherReaderIsAnError) {
   EXPECT_THAT(OpenError("a: &x 1\nb: *x\n"), HasSubstr(":2:4: found an alias, expected the value itself"));
+  EXPECT_EQ(OpenError("a: &x [1, *x]\n"), Place(":1:11: found an alias, expected the value itself"));
   EXPECT_THAT(OpenError("a: 1\n---\nb: 2\n"), HasSubstr(": found a second document, expected one"));
   EXPECT_THAT(OpenError("[a, b]: 1\n"), HasSubstr(":1:1: found a list, expected a key"));
   EXPECT_THAT(OpenError("~: 1\n"), HasSubstr(":1:1: found nothing, expected a key"));
 }
 
-TEST_F(YamlTest, DeepNestingIsAnErrorAndNoCrash) { EXPECT_NE(OpenError(std::string(100'000, '[')), ""); }
+TEST_F(YamlTest, TheFirstOfSeveralMistakesIsTold) {
+  EXPECT_EQ(OpenError("a: 1\na: 2\nb: [\n"), Place(":2:1: the key 'a' stands here a second time, first in line 1"));
+  EXPECT_EQ(OpenError("{a: 1}: 2\nb: *x\n"), Place(":1:1: found a mapping, expected a key"));
+}
+
+TEST_F(YamlTest, ANullHasThePlaceOfItsKeyOrItsOwn) {
+  YamlMap yaml = Open("a:\n  b:\n  c: 1\nd:\n  - ~\n  - x\n");
+  EXPECT_EQ(yaml.Map("a").Where("b"), Place(":2:3: a: b"));
+  yaml.Texts("d");
+  EXPECT_EQ(FinishError(yaml), Place(":5:5: d: item 1: found nothing, expected text"));
+}
+
+TEST_F(YamlTest, DeepNestingIsAnErrorAndNoCrash) {
+  EXPECT_NE(OpenError(std::string(100'000, '[')), "");
+  std::string maps;
+  for (int i = 0; i < 100'000; ++i) maps += "{a: ";
+  EXPECT_NE(OpenError(maps), "");
+  maps.clear();
+  for (size_t i = 0; i < 1000; ++i) maps += std::string(i, ' ') + "a:\n";
+  EXPECT_NE(OpenError(maps), "");
+}
+
+// Ten of ten of ten ...: refused at the first one, before a tree of them is made.
+TEST_F(YamlTest, AliasesOfAliasesTakeNoTime) {
+  std::string text = "a0: &a0 [x]\n";
+  for (int i = 1; i < 40; ++i) {
+    const std::string before = "*a" + std::to_string(i - 1);
+    text += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [" + before;
+    for (int k = 0; k < 9; ++k) text += ", " + before;
+    text += "]\n";
+  }
+  EXPECT_EQ(OpenError(text), Place(":2:10: found an alias, expected the value itself"));
+}
 
 TEST_F(YamlTest, OtherEncodingsAreErrors) {
   EXPECT_EQ(OpenError("a: 1\nname: Gl\xE4ser\n"),
