@@ -26,7 +26,7 @@ class CsvReader : public ScanReader {
   CsvReader(const ScanFormat& format, DelimitedText text)
       : format_(format),
         text_(std::move(text)),
-        invalid_(format.invalid.value_or(std::numeric_limits<double>::quiet_NaN())) {}
+        invalid_(format.invalid.value_or(std::numeric_limits<double>::infinity())) {}
   int64_t bytes_read() const override { return text_.bytes_read(); }
   int64_t bytes_total() const override { return text_.bytes_total(); }
 
@@ -35,7 +35,8 @@ class CsvReader : public ScanReader {
   void KeepLines() {
     if (format_.lines) text_.KeepLines(format_.lines->first, format_.lines->second);
   }
-  bool IsMissing(double number) const { return std::isnan(number) || number == invalid_; }
+  // Neither below nor above it: equal, or nan.
+  bool IsMissing(double number) const { return !std::islessgreater(number, invalid_); }
   // There were points, or none at all at the end of the file is an error.
   Result<bool> Taken(size_t points) {
     any_point_ |= points > 0;
@@ -47,7 +48,7 @@ class CsvReader : public ScanReader {
   DelimitedText text_;
 
  private:
-  double invalid_;  // nan, which equals no number, if there is none
+  double invalid_;  // infinite if there is none: numbers of the file are finite
   bool any_point_ = false;
 };
 
