@@ -14,10 +14,10 @@ struct ThinQr {
 };
 ThinQr QrOf(const Eigen::MatrixXd& matrix);  // m x n, m >= n
 
-struct Svd {               // matrix = u diag(values) v.leftCols(values.size())'
+struct Svd {               // matrix = u diag(values) v'
   Eigen::MatrixXd u;       // m x min(m, n)
   Eigen::VectorXd values;  // min(m, n), descending
-  Eigen::MatrixXd v;       // n x n: beyond the values, what the matrix maps to zero
+  Eigen::MatrixXd v;       // n x min(m, n)
 };
 // m x n; by one-sided rotations (Golub and Van Loan, 8.6.3), which small values survive.
 Svd SvdOf(const Eigen::MatrixXd& matrix);

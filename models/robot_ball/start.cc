@@ -96,15 +96,15 @@ std::string Names(const std::vector<Station>& stations) {
 Result<Matrix3d> Rotation(const std::vector<Station>& stations, const MatrixXd& rows) {
   MatrixXd shift = rows.middleCols<4>(kT);
   for (Index k = 0; k < shift.cols(); ++k) shift.col(k).normalize();
-  const MatrixXd left = ProjectOut(shift, rows.leftCols<9>());
+  MatrixXd left = ProjectOut(shift, rows.leftCols<9>());
   if (left.rows() < 8)
     return Error{
         fmt::format("{}: the balls give {} equations for the turn of the hand-eye, expected at least 8: see "
                     "the same balls from more poses",
                     Names(stations), left.rows())};
+  if (left.rows() == 8) left = (MatrixXd(9, 9) << left, Eigen::RowVectorXd::Zero(9)).finished();  // of rank 8 at most
   const Svd svd = SvdOf(left);
-  VectorXd sigma = VectorXd::Zero(9);
-  sigma.head(svd.values.size()) = svd.values;
+  const VectorXd& sigma = svd.values;
   if (sigma[7] < kSmallestMove_mm * std::sqrt(Balls(stations)) || sigma[8] > 0.5 * sigma[7])
     return Error{fmt::format(
         "{}: the poses do not determine the turn of the hand-eye: they hardly turn or move the flange, or not about "

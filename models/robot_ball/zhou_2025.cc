@@ -269,7 +269,7 @@ Matrix3Xd AdjustByAngles(const Matrix3Xd& measured, const Matrix3Xd& on_artifact
   const VectorXd& sigma = svd.values;
   const double k = std::pow(kRidge * sigma[0], 2);
   const VectorXd filter = sigma.array() / (sigma.array().square() + k);
-  const VectorXd dX = svd.v.leftCols(sigma.size()) * filter.cwiseProduct(svd.u.transpose() * d);
+  const VectorXd dX = svd.v * filter.cwiseProduct(svd.u.transpose() * d);
   return measured + dX.reshaped(3, measured.cols());
 }
 
