@@ -19,6 +19,28 @@ namespace {
 
 constexpr int kFewestTrials = 100, kMostTrials = 10'000'000;
 
+bool IsResult(const std::filesystem::path& file) { return file.extension() == ".json"; }
+
+Result<std::unique_ptr<Scanner>> Reload(const std::string& file) {
+  SCANCAL_ASSIGN_OR_RETURN(const Json json, ReadJson(file));
+  SCANCAL_RETURN_IF_ERROR(CalibrationFromJson(json, file));
+  const bool has_data = json.contains("data") && json["data"].is_object() && json["data"].contains("dataset") &&
+                        json["data"]["dataset"].is_string();
+  if (!has_data)
+    return Error{file + ": found no compressed data, which older versions did not keep; refine the data set itself"};
+  SCANCAL_ASSIGN_OR_RETURN(const Dataset dataset,
+                           ParseDataset(json["data"]["dataset"], file, file + ": data: dataset"));
+  SCANCAL_ASSIGN_OR_RETURN(const ScannerKind* kind, FindScannerKind(dataset));
+  return kind->reload(dataset, json["data"], file);
+}
+
+Result<std::unique_ptr<Scanner>> Load(const std::vector<std::string>& arguments) {
+  if (arguments.size() == 1 && IsResult(arguments[0])) return Reload(arguments[0]);
+  SCANCAL_ASSIGN_OR_RETURN(const Dataset dataset, ReadOnlyArgument(arguments));
+  SCANCAL_ASSIGN_OR_RETURN(const ScannerKind* kind, FindScannerKind(dataset));
+  return kind->load(dataset);
+}
+
 Result<Calibration> Calibrated(const std::vector<std::string>& arguments, const RefineChoice& choice) {
   SCANCAL_RETURN_IF_ERROR(CheckLanguage());
   SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, LoadAndEcho(arguments));
@@ -59,32 +81,6 @@ Result<void> CheckTrials(const std::string& flag, int trials) {
   return Error{"--" + flag + ": found " + std::to_string(trials) + ", expected " + std::to_string(kFewestTrials) +
                " to " + std::to_string(kMostTrials) + " trials"};
 }
-
-namespace {
-
-bool IsResult(const std::filesystem::path& file) { return file.extension() == ".json"; }
-
-Result<std::unique_ptr<Scanner>> Reload(const std::string& file) {
-  SCANCAL_ASSIGN_OR_RETURN(const Json json, ReadJson(file));
-  SCANCAL_RETURN_IF_ERROR(CalibrationFromJson(json, file));
-  const bool has_data = json.contains("data") && json["data"].is_object() && json["data"].contains("dataset") &&
-                        json["data"]["dataset"].is_string();
-  if (!has_data)
-    return Error{file + ": found no compressed data, which older versions did not keep; refine the data set itself"};
-  SCANCAL_ASSIGN_OR_RETURN(const Dataset dataset,
-                           ParseDataset(json["data"]["dataset"], file, file + ": data: dataset"));
-  SCANCAL_ASSIGN_OR_RETURN(const ScannerKind* kind, FindScannerKind(dataset));
-  return kind->reload(dataset, json["data"], file);
-}
-
-Result<std::unique_ptr<Scanner>> Load(const std::vector<std::string>& arguments) {
-  if (arguments.size() == 1 && IsResult(arguments[0])) return Reload(arguments[0]);
-  SCANCAL_ASSIGN_OR_RETURN(const Dataset dataset, ReadOnlyArgument(arguments));
-  SCANCAL_ASSIGN_OR_RETURN(const ScannerKind* kind, FindScannerKind(dataset));
-  return kind->load(dataset);
-}
-
-}  // namespace
 
 Result<Dataset> ReadOnlyArgument(const std::vector<std::string>& arguments) {
   if (arguments.size() != 1)

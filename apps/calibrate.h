@@ -1,4 +1,4 @@
-// What the commands that calibrate share.
+// What the commands on a data set share: loading it, and calibrating.
 #pragma once
 #include <memory>
 #include <string>

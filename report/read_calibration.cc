@@ -2,11 +2,11 @@
 #include <optional>
 #include "report/calibration_json.h"
 #include "solver/dense.h"
+#include "solver/uncertainty/gum.h"
 
 namespace scancal {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 const Json& At(const Json& object, const char* key) {
@@ -171,7 +171,7 @@ Result<MonteCarloSummary> MonteCarloFromJson(const Json& json, const std::string
       MonteCarloParameter& p = summary.parameters.emplace_back();
       p.name = each.at("name");
       for (const auto& [key, number] : kMonteCarloNumbers)
-        p.*number = each.at(key).is_null() ? std::numeric_limits<double>::quiet_NaN() : each.at(key).get<double>();
+        p.*number = each.at(key).is_null() ? kNotANumber : each.at(key).get<double>();
       p.verdict = each.at("verdict");
       p.edges = each.at("histogram").at("edges").get<std::vector<double>>();
       p.counts = each.at("histogram").at("counts").get<std::vector<double>>();

@@ -1,14 +1,11 @@
 // The worked examples of the GUM (JCGM 100:2008, Annex H).
 #include "solver/uncertainty/gum.h"
 #include <cmath>
-#include <limits>
 #include "models/selftest/fit.h"
 #include "models/selftest/selftest.h"
 
 namespace scancal::selftest {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Input {
   double x, u, dof;

@@ -61,6 +61,7 @@ TEST_F(RolesTest, AWrongHeldValueIsNotQuietlyBelieved) {
   const Json result = With("parameters: {M: {hold: 126}}");
   EXPECT_EQ(ValueOf(result, "M"), 126);
   EXPECT_THAT(Sentences(result, "warnings"), HasSubstr("lack of fit: M is held, but the residuals ask for -"));
+  EXPECT_THAT(result["messages"].dump(), HasSubstr("Mangelnde Anpassung: M ist festgehalten, die Residuen verlangen"));
 }
 
 TEST_F(RolesTest, BothMayBeHeld) {

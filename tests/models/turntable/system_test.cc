@@ -43,6 +43,12 @@ class SystemTest : public ::testing::TestWithParam<Wrong> {
     return *ReadDataset(folder_.path());
   }
 
+  void ExpectTruth(const Calibration& result) const {
+    EXPECT_TRUE(result.ok()) << result.unreliable.front();
+    EXPECT_NEAR(result.Find("M")->value, truth_.M(), 4 * result.Find("M")->u);
+    EXPECT_NEAR(result.Find("N")->value, truth_.N(), 4 * result.Find("N")->u);
+  }
+
   static void ExpectFlat(const ComparisonRow& row) {
     constexpr size_t kRms_um = 5, kHeldOut_um = 6;
     ASSERT_FALSE(row.cells.empty()) << row.method << row.note;
@@ -63,9 +69,7 @@ TEST_P(SystemTest, IsTheSameEverywhereWhereItIsKnown) {
   ASSERT_TRUE(scanner.ok()) << scanner.error().message;
   const Result<Calibration> result = (*scanner)->Calibrate({});
   ASSERT_TRUE(result.ok()) << result.error().message;
-  EXPECT_TRUE(result->ok()) << result->unreliable.front();
-  EXPECT_NEAR(result->Find("M")->value, truth_.M(), 4 * result->Find("M")->u);
-  EXPECT_NEAR(result->Find("N")->value, truth_.N(), 4 * result->Find("N")->u);
+  ExpectTruth(*result);
   for (const TargetSummary& target : result->targets) EXPECT_EQ(target.set_aside.size(), 0U);
 
   // The search sees flat planes at the result, and nowhere better ones.
@@ -115,9 +119,7 @@ TEST_P(SystemTest, IsJudgedByWhatWasFound) {
   ASSERT_TRUE(scanner.ok()) << scanner.error().message;
   const Result<Calibration> result = (*scanner)->Calibrate({});
   ASSERT_TRUE(result.ok()) << result.error().message;
-  EXPECT_TRUE(result->ok()) << result->unreliable.front();
-  EXPECT_NEAR(result->Find("M")->value, truth_.M(), 4 * result->Find("M")->u);
-  EXPECT_NEAR(result->Find("N")->value, truth_.N(), 4 * result->Find("N")->u);
+  ExpectTruth(*result);
   EXPECT_NEAR(result->sigma, kNoise_mm, 0.1 * kNoise_mm);
   const auto& near = result->surface.at("near").rows;
   EXPECT_NEAR(near[near.size() / 2][2], kNoise_mm, 0.2 * kNoise_mm);
