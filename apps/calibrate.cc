@@ -2,6 +2,7 @@
 #include <gflags/gflags.h>
 #include <cstdio>
 #include <filesystem>
+#include <future>
 #include "apps/command.h"
 #include "io/input_file.h"
 #include "io/json_file.h"
@@ -21,12 +22,14 @@ constexpr int kFewestTrials = 100, kMostTrials = 10'000'000;
 
 bool IsResult(const std::filesystem::path& file) { return file.extension() == ".json"; }
 
-Result<std::unique_ptr<Scanner>> Reload(const std::string& file) {
-  SCANCAL_ASSIGN_OR_RETURN(const Json json, ReadJson(file));
+bool HasData(const Json& json) {
+  return json.contains("data") && json["data"].is_object() && json["data"].contains("dataset") &&
+         json["data"]["dataset"].is_string();
+}
+
+Result<std::unique_ptr<Scanner>> Reload(const Json& json, const std::string& file) {
   SCANCAL_RETURN_IF_ERROR(CalibrationFromJson(json, file));
-  const bool has_data = json.contains("data") && json["data"].is_object() && json["data"].contains("dataset") &&
-                        json["data"]["dataset"].is_string();
-  if (!has_data)
+  if (!HasData(json))
     return Error{file + ": found no compressed data, which older versions did not keep; refine the data set itself"};
   SCANCAL_ASSIGN_OR_RETURN(const Dataset dataset,
                            ParseDataset(json["data"]["dataset"], file, file + ": data: dataset"));
@@ -35,26 +38,29 @@ Result<std::unique_ptr<Scanner>> Reload(const std::string& file) {
 }
 
 Result<std::unique_ptr<Scanner>> Load(const std::vector<std::string>& arguments) {
-  if (arguments.size() == 1 && IsResult(arguments[0])) return Reload(arguments[0]);
+  if (arguments.size() == 1 && IsResult(arguments[0])) {
+    SCANCAL_ASSIGN_OR_RETURN(const Json json, ReadJson(arguments[0]));
+    return Reload(json, arguments[0]);
+  }
   SCANCAL_ASSIGN_OR_RETURN(const Dataset dataset, ReadOnlyArgument(arguments));
   SCANCAL_ASSIGN_OR_RETURN(const ScannerKind* kind, FindScannerKind(dataset));
   return kind->load(dataset);
 }
 
-Result<Calibration> Calibrated(const std::vector<std::string>& arguments, const RefineChoice& choice) {
+Result<Calibration> Calibrated(const std::vector<std::string>& arguments, RefineChoice choice) {
   SCANCAL_RETURN_IF_ERROR(CheckLanguage());
   SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, LoadAndEcho(arguments));
   const std::filesystem::path file = std::filesystem::path(FLAGS_out) / "calibration.json";
   SCANCAL_RETURN_IF_ERROR(OutputFile::Create(file));  // told before the work, not after it
+  // Reading a file twice takes as long as a fit.
+  auto inputs = std::async(std::launch::async, [&] { return InputsOf(*scanner); });
+  choice.figures = false;
   SCANCAL_ASSIGN_OR_RETURN(Calibration calibration, scanner->Calibrate(choice));
-  SCANCAL_ASSIGN_OR_RETURN(calibration.inputs, InputsOf(*scanner));
+  SCANCAL_ASSIGN_OR_RETURN(calibration.inputs, inputs.get());
   calibration.command = CommandLine();
   calibration.version = SCANCAL_VERSION;
   Enclosures with{.certificate = scanner->dataset().certificate};
   SCANCAL_ASSIGN_OR_RETURN(with.data, scanner->Data());
-  // What the other methods cannot do is no reason to lose this one's result.
-  if (const Result<Comparison> comparison = scanner->Compare({.brief = true}); comparison.ok())
-    with.comparison = *comparison;
   SCANCAL_RETURN_IF_ERROR(WriteJson(file, ToJson(calibration, with)));
   return calibration;
 }
@@ -67,9 +73,10 @@ int CalibrateAndReport(const std::vector<std::string>& arguments, const RefineCh
   std::printf("%s", ToText(*calibration).c_str());
   if (FLAGS_report) {
     std::fflush(stdout);
-    const std::filesystem::path folder = FLAGS_out;
-    const Result<bool> written =
-        WritePage(folder / "calibration.json", {folder / "report.html", {}, {}, {}, FLAGS_language});
+    const std::filesystem::path folder = FLAGS_out, file = folder / "calibration.json";
+    const Result<Json> figures = FiguresOf(file);
+    if (!figures.ok()) return Complain(figures.error().message);
+    const Result<bool> written = WritePage(file, *figures, {folder / "report.html", {}, {}, {}, FLAGS_language});
     if (!written.ok()) return Complain(written.error().message);
     if (!*written) return kBadInput;
   }
@@ -94,6 +101,18 @@ Result<std::unique_ptr<Scanner>> LoadAndEcho(const std::vector<std::string>& arg
   SCANCAL_ASSIGN_OR_RETURN(std::unique_ptr<Scanner> scanner, Load(arguments));
   std::printf("%s\n\n", scanner->Describe().c_str());
   return scanner;
+}
+
+Result<Json> FiguresOf(const std::filesystem::path& calibration) {
+  const Result<Json> json = ReadJson(calibration);
+  if (!json.ok() || !json->is_object() || HoldsFigures(*json) || !HasData(*json)) return Json();
+  const Result<Calibration> found = CalibrationFromJson(*json, calibration.string());
+  if (!found.ok()) return Json();
+  SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, Reload(*json, calibration.string()));
+  const RefineChoice choice{.residual = found->residual, .equal_weights = found->equal_weights};
+  SCANCAL_ASSIGN_OR_RETURN(const Calibration again, scanner->Calibrate(choice));
+  const Result<Comparison> comparison = scanner->Compare({.brief = true});
+  return FiguresToJson(again, comparison.ok() ? *comparison : Comparison{});  // without what others cannot do
 }
 
 Result<std::vector<HashedFile>> InputsOf(const Scanner& scanner) {

@@ -1,5 +1,6 @@
 // What the commands on a data set share: loading it, and calibrating.
 #pragma once
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,6 +20,9 @@ Result<void> CheckTrials(const std::string& flag, int trials);
 Result<std::unique_ptr<Scanner>> LoadAndEcho(const std::vector<std::string>& arguments);
 // What was read with its hashes; behind a calibration.json what it was made from, as it says.
 Result<std::vector<HashedFile>> InputsOf(const Scanner& scanner);
+// What a calibration.json leaves out and its page draws (FiguresToJson), from its compressed data. Null of a file that
+// holds it, as those of older versions do, or that is none: the page says why.
+Result<Json> FiguresOf(const std::filesystem::path& calibration);
 Result<Dataset> ReadOnlyArgument(const std::vector<std::string>& arguments);
 
 }  // namespace scancal

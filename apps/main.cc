@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gflags/gflags.h>
 #include <glog/logging.h>
+#include <malloc.h>
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -63,6 +64,10 @@ std::string ShellQuoted(const std::string& argument) {
 
 int Main(int argc, char** argv) {
   for (int i = 0; i < argc; ++i) command_line += (i ? " " : "") + ShellQuoted(argv[i]);
+  // A fit takes matrices of the same sizes again and again: kept here, or the system clears them anew every time.
+  constexpr int kKept = 64 << 20;
+  mallopt(M_MMAP_THRESHOLD, kKept);
+  mallopt(M_TRIM_THRESHOLD, kKept);
   FLAGS_logtostderr = true;
   FLAGS_minloglevel = google::GLOG_WARNING;
   google::InitGoogleLogging(argv[0]);

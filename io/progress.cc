@@ -44,22 +44,29 @@ std::string Line(const std::string& label, Seconds elapsed, double fraction) {
 
 }  // namespace
 
-Progress::Progress(std::string label)
+Progress::Progress(std::string label, Seconds between_lines)
     : label_(std::move(label)),
       terminal_(::isatty(STDERR_FILENO) == 1),
+      between_lines_(between_lines),
       start_(std::chrono::steady_clock::now()),
       last_(start_) {}
 
 Progress::~Progress() {
-  if (last_ != start_) Put("\x1b[K");
+  if (terminal_ && last_ != start_) Put("\x1b[K");
 }
 
 void Progress::Show(double fraction) {
-  if (!terminal_) return;
   const auto now = std::chrono::steady_clock::now();
-  if (now - start_ < kSilence || now - last_ < kInterval) return;
+  const bool due = terminal_ ? now - start_ >= kSilence && now - last_ >= kInterval : now - last_ >= between_lines_;
+  if (!due) return;
   last_ = now;
   const double shown = std::isnan(fraction) ? 0 : std::clamp(fraction, 0.0, 1.0);
+  if (!terminal_) {
+    const std::string left = TimeLeft(now - start_, shown);
+    Put(label_ + ": " + std::to_string(static_cast<int>(shown * 100)) + " %" + (left.empty() ? "" : ", " + left) +
+        "\n");
+    return;
+  }
   // A line as wide as the terminal would wrap and could not be wiped.
   Put(Line(label_, now - start_, shown).substr(0, TerminalWidth() - 1).append("\x1b[K\r"));
 }

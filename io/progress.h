@@ -1,4 +1,4 @@
-// A progress bar on the terminal; silent where standard error is not one.
+// A progress bar on the terminal; where standard error is none, a line every ten seconds.
 #pragma once
 #include <chrono>
 #include <string>
@@ -7,15 +7,17 @@ namespace scancal {
 
 class Progress {
  public:
-  explicit Progress(std::string label);  // "reading left.csv"
-  ~Progress();                           // wipes the line
+  // "reading left.csv". between_lines: where standard error is no terminal.
+  explicit Progress(std::string label, std::chrono::duration<double> between_lines = std::chrono::seconds(10));
+  ~Progress();  // wipes the bar
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  void Show(double fraction);  // 0..1, any thread at a time; redraws at most ten times a second, with the time left
+  void Show(double fraction);  // 0..1, any thread at a time; redraws a bar at most ten times a second
 
  private:
   std::string label_;
   bool terminal_;
+  std::chrono::duration<double> between_lines_;
   std::chrono::steady_clock::time_point start_, last_;
 };
 

@@ -67,9 +67,9 @@ std::string Opening(const Dataset& dataset, const std::string& kind) {
                      dataset.units.length, dataset.units.angle);
 }
 
-Result<void> CheckOnlyResidual(const RefineChoice& choice, const std::string& what) {
-  if (choice.residual.empty() || choice.residual == "depth") return {};
-  return Error{"residual: found \"" + choice.residual + "\", but the only one of this model is " + what};
+Result<void> CheckOnlyResidual(const RefineChoice& choice, const std::string& name) {
+  if (choice.residual.empty() || choice.residual == "depth" || choice.residual == name) return {};
+  return Error{"residual: found \"" + choice.residual + "\", but the only one of this model is \"" + name + "\""};
 }
 
 Result<void> CheckMonteCarlo(const RefineChoice& choice, bool weighted) {
@@ -98,6 +98,7 @@ Calibration Conclude(const Dataset& dataset, const Refined& refined, const Monte
   result.model = dataset.model;
   result.name = dataset.name;
   result.residual = refined.residual;
+  result.equal_weights = !refined.solution.variances;
   result.seconds = refined.seconds;
   result.warnings.insert(result.warnings.begin(), refined.warnings.begin(), refined.warnings.end());
   return result;

@@ -24,10 +24,12 @@ struct RefineChoice {
   bool equal_weights = false;  // in place of weights from the estimated variances
   int max_iterations = 100;
   MonteCarloChoice monte_carlo{};
+  bool figures = true;  // tables that only a figure needs, where they are large
 };
 
 struct CompareChoice {
-  bool brief = false;  // without what takes much longer than a calibration; the row's note says so
+  std::vector<double> steps = {1, 0.1};  // of a published search, mm
+  bool brief = false;                    // without what takes much longer than a calibration; the row's note says so
 };
 
 // A scanner with its data loaded and compressed.
@@ -89,8 +91,8 @@ Result<int> SetDeclared(const ParameterSetting& setting, const Dataset& dataset,
 // How Describe begins: "NAME: KIND, lengths in mm, angles in deg". NAME: the data set's, or its folder's.
 std::string Opening(const Dataset& dataset, const std::string& kind);
 
-// For a model with one residual, which "depth", the program's default, means as well; what: it is, for the Error.
-Result<void> CheckOnlyResidual(const RefineChoice& choice, const std::string& what);
+// For a model with one residual of this name, which "depth", the program's default, means as well.
+Result<void> CheckOnlyResidual(const RefineChoice& choice, const std::string& name);
 // An Error where Monte Carlo is asked of a fit with equal weights.
 Result<void> CheckMonteCarlo(const RefineChoice& choice, bool weighted);
 

@@ -13,10 +13,9 @@ using Legendre = std::array<double, kHighest + 1>;
 
 // Orthonormal on [-1, 1] under its uniform distribution.
 Legendre LegendreAt(double x) {
-  Legendre p;
-  for (int degree = 0; degree <= kHighest; ++degree)
-    p[degree] = std::sqrt(2.0 * degree + 1) * std::legendre(static_cast<unsigned>(degree), x);
-  return p;
+  constexpr double k3 = 1.7320508075688772, k5 = 2.23606797749979, k7 = 2.6457513110645907;  // their roots
+  const double xx = x * x;
+  return {1, k3 * x, k5 * (3 * xx - 1) / 2, k7 * x * (5 * xx - 3) / 2, 3 * ((35 * xx - 30) * xx + 3) / 8};
 }
 
 }  // namespace
@@ -65,6 +64,169 @@ Model::Model(Residuals residuals) : residuals_(residuals) {
   declare("noise_z", Unit::kMm, kPoint, Role::kHold, false);
   for (int k = 0; k < kFormModes; ++k)
     declare(("form_" + std::to_string(k + 1)).c_str(), Unit::kMm, kTarget, Role::kHold, false, "form");
+}
+
+namespace {
+
+// n . P - d = A + Y y + Z z + B bend of a profile, or what these become by a change.
+struct Four {
+  double A = 0, Y = 0, Z = 0, B = 0;
+};
+
+// What all profiles of a placement share: the plane's normal with its derivatives, and the columns of Ry Rx.
+struct Placed {
+  Placed(const Model::Target& plane, const double* q)
+      : cx(std::cos(q[Model::kTiltX])),
+        sx(std::sin(q[Model::kTiltX])),
+        cy(std::cos(q[Model::kTiltY])),
+        sy(std::sin(q[Model::kTiltY])),
+        distance(plane.distance + q[Model::kDistance]) {
+    depth = {sy * sx, cx, cy * sx};
+    height = {sy * cx, -sx, cy * cx};
+    const Eigen::Vector3d turn = q[Model::kNormal1] * plane.e1 + q[Model::kNormal2] * plane.e2;
+    Rotate(turn.data(), plane.normal, normal.data());
+    // The normal is v cos t + (w x v) sin(t) / t, w its rotation vector of length t across v.
+    const double t2 = turn.squaredNorm(), t = std::sqrt(t2);
+    const bool small = t < 1e-4;
+    const double sinc = small ? 1 - t2 / 6 : std::sin(t) / t;
+    const double bent = small ? -1.0 / 3 + t2 / 30 : (t * std::cos(t) - std::sin(t)) / (t2 * t);  // sinc' / t
+    for (const int k : {0, 1}) {
+      const Eigen::Vector3d& e = k == 0 ? plane.e1 : plane.e2;
+      const double along = q[Model::kNormal1 + k];
+      leans[k] = -sinc * along * plane.normal + sinc * e.cross(plane.normal) + bent * along * turn.cross(plane.normal);
+    }
+  }
+  double cx, sx, cy, sy, distance;
+  Eigen::Vector3d depth, height, normal;
+  std::array<Eigen::Vector3d, 2> leans;  // d normal / d normal_1, normal_2
+};
+
+// One profile's four numbers and their derivatives. Every quantity of the system and of the plane moves its rows by
+// them alone. What turns the profile moves n, the normal turned back to the profiler, by dn/da = (-n_y, n_x, 0).
+class ProfileDerivatives {
+ public:
+  ProfileDerivatives(const Placed& placed, double alpha, const double* q)
+      : placed_(placed), q_(q), alpha_(alpha), in_table_(alpha, q), n_(in_table_.TurnedBack(placed.normal)) {}
+
+  Four Value() const {
+    Four at = Along(n_);
+    at.A -= placed_.distance;
+    return at;
+  }
+
+  Four By(int quantity) const {
+    const double growth = 1 + q_[Model::kExpansion];
+    switch (quantity) {
+      case Model::kM:
+        return {-n_[0] * growth};
+      case Model::kN:
+        return {n_[1] * growth};
+      case Model::kExpansion:
+        return {n_[1] * q_[Model::kN] - n_[0] * q_[Model::kM]};
+      case Model::kTiltX:
+        return Tilted(n_.dot(placed_.height), -n_.dot(placed_.depth));
+      case Model::kTiltY: {  // n . dRy/d(tilt_y), of what the tilt about X leaves along Z
+        const double across = n_[0] * placed_.cy - n_[2] * placed_.sy;
+        return Tilted(across * placed_.sx, across * placed_.cx);
+      }
+      case Model::kScaleY:
+        return {0, n_.dot(placed_.depth)};
+      case Model::kScaleZ:
+        return {0, 0, n_.dot(placed_.height)};
+      case Model::kShear:
+        return {0, 0, n_.dot(placed_.depth)};
+      case Model::kLinearity:
+        return {0, 0, 0, n_.dot(placed_.depth)};
+      case Model::kEncoderJitter:
+        return Turned(-1);
+      case Model::kEncoderCos1:
+        return Turned(-std::cos(alpha_));
+      case Model::kEncoderSin1:
+        return Turned(-std::sin(alpha_));
+      case Model::kEncoderCos2:
+        return Turned(-std::cos(2 * alpha_));
+      case Model::kEncoderSin2:
+        return Turned(-std::sin(2 * alpha_));
+      case Model::kNormal1:
+      case Model::kNormal2:
+        return Along(in_table_.TurnedBack(placed_.leans[quantity - Model::kNormal1]));
+      default:
+        return {-1};  // distance
+    }
+  }
+
+ private:
+  Four Along(const Eigen::Vector3d& m) const {
+    return {m.dot(in_table_.origin), m.dot(in_table_.along_y), m.dot(in_table_.along_z), m.dot(in_table_.along_bend)};
+  }
+  Four Turned(double da) const { return Along({-n_[1] * da, n_[0] * da, 0}); }
+  // By a change of the columns (depth, height) that is so long along n.
+  Four Tilted(double of_depth, double of_height) const {
+    return {0, of_depth * (1 + q_[Model::kScaleY]), of_height * (1 + q_[Model::kScaleZ]) + of_depth * q_[Model::kShear],
+            of_depth * q_[Model::kLinearity]};
+  }
+
+  const Placed& placed_;
+  const double* q_;
+  double alpha_;
+  ProfileInTable<double> in_table_;
+  Eigen::Vector3d n_;
+};
+
+}  // namespace
+
+void Model::Jacobian(const Target& plane, std::span<const View> profiles, const Seen<double>& seen,
+                     std::span<const int> seeds, double* r, double* jacobian) const {
+  const Placed placed(plane, seen.q);
+  const bool depth = residuals_ == Residuals::kDepth;
+  const bool formed = !std::all_of(seen.q + kForm, seen.q + kForm + kFormModes, IsZero<double>);
+  std::ptrdiff_t rows = 0;
+  for (const View& profile : profiles) rows += Points(profile);
+  Seen<double> q = seen;
+  for (const View& profile : profiles) {
+    const int points = Points(profile);
+    const ProfileDerivatives derivatives(placed, profile.alpha, q.q);
+    const Four at = derivatives.Value();
+    const double along_noise = profile.along_range ? -at.A : at.Y, scale = depth ? 1 / along_noise : 1;
+    // The rows of one change of the four numbers; along: the change of along_noise.
+    const auto row = [&](int i, const Four& four, double along) {
+      const PseudoPoint& p = profile.points[i];
+      double sum = p.weight * (four.A + four.Y * p.y + four.Z * p.z);
+      if (profile.bend.size()) sum += four.B * profile.bend[i];
+      if (q.point) sum -= along * q(i, kNoiseY) + four.Z * q(i, kNoiseZ);
+      else sum -= along * q[kNoiseY] + four.Z * q[kNoiseZ];
+      if (profile.line.size())
+        sum -= along * (profile.line(i, 0) * q[kLineOffset] + profile.line(i, 1) * q[kLineSlope]);
+      return sum;
+    };
+    for (int i = 0; i < points; ++i) {
+      r[i] = row(i, at, along_noise);
+      for (int k = 0; k < kFormModes && formed && profile.form.size(); ++k) r[i] -= profile.form(i, k) * q[kForm + k];
+      r[i] *= scale;
+    }
+    for (size_t k = 0; k < seeds.size(); ++k) {
+      double* const column = jacobian + static_cast<std::ptrdiff_t>(k) * rows;
+      const int seed = seeds[k];
+      if (seed <= kEncoderJitter) {
+        const Four four = derivatives.By(seed);
+        const double along = profile.along_range ? -four.A : four.Y;
+        for (int i = 0; i < points; ++i)
+          column[i] = depth ? (row(i, four, along) - r[i] * along) * scale : row(i, four, along);
+        continue;
+      }
+      for (int i = 0; i < points; ++i) {
+        const double of_point = seed == kNoiseY   ? along_noise
+                                : seed == kNoiseZ ? at.Z
+                                : seed < kForm
+                                    ? (profile.line.size() ? along_noise * profile.line(i, seed - kLineOffset) : 0)
+                                    : (profile.form.size() ? profile.form(i, seed - kForm) : 0);
+        column[i] = -of_point * scale;
+      }
+    }
+    r += points;
+    jacobian += points;
+    if (q.point) q.point += points * q.count;
+  }
 }
 
 std::vector<StandIns<Model::View>> Model::MakeNodes(const Target& target) const {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 #include "models/line/pseudo_points.h"
@@ -91,6 +93,9 @@ class Model {
 
   template <class T>
   void Residual(const Target& plane, const View& profile, const Seen<T>& q, T* r) const;
+  // The same with its derivatives, see HasJacobian.
+  void Jacobian(const Target& plane, std::span<const View> profiles, const Seen<double>& q, std::span<const int> seeds,
+                double* r, double* jacobian) const;
 
   // The node storey: point-to-plane residuals are linear in the nine features {1, y, z} x {1, cos a, sin a}, so nine
   // points in general position, three on each of three profiles, give all others. None for the depth residual, nor

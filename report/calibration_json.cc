@@ -108,6 +108,12 @@ Json ResidualsJson(const TargetSummary& target) {
   return json;
 }
 
+Json ResidualsJson(const Calibration& calibration) {
+  Json json = {{"targets", Json::array()}};
+  for (const TargetSummary& target : calibration.targets) json["targets"].push_back(ResidualsJson(target));
+  return json;
+}
+
 Json ByParameter(const std::vector<std::string>& names, const std::vector<double>& values) {
   Json json = Json::object();
   for (size_t k = 0; k < values.size(); ++k) json[names[k]] = Number(values[k]);
@@ -240,12 +246,22 @@ Json MessagesJson(const Calibration& c, const Comparison& comparison) {
 
 }  // namespace
 
+Json FiguresToJson(const Calibration& c, const Comparison& comparison) {
+  return {{"compare", CompareJson(comparison)},
+          {"surface", ToJson(c.surface)},
+          {"residuals", ResidualsJson(c)},
+          {"messages", MessagesJson(c, comparison)}};
+}
+
+bool HoldsFigures(const Json& file) { return file.contains("compare") && !file["compare"].empty(); }
+
 Json ToJson(const Calibration& c, const Enclosures& with) {
   Json json = {{"scancal", kFormatVersion}, {"model", c.model}, {"name", c.name}, {"residual", c.residual}};
   json["status"] = c.ok() ? "ok" : "unreliable";
   json["unreliable"] = c.unreliable;
   json["warnings"] = c.warnings;
-  json["messages"] = MessagesJson(c, with.comparison);
+  json["weights"] = c.equal_weights ? "equal" : "estimated";
+  json["messages"] = MessagesJson(c, {});
   json["parameters"] = Json::array();
   for (const Parameter& parameter : c.parameters) json["parameters"].push_back(ParameterJson(parameter));
   json["determined"] = Json::object();
@@ -277,12 +293,11 @@ Json ToJson(const Calibration& c, const Enclosures& with) {
   json["misfits"] = MisfitsJson(c);
   json["budget"] = BudgetJson(c);
   json["influences"] = InfluencesJson(c);
-  json["compare"] = CompareJson(with.comparison);
+  json["compare"] = Json::array();
   json["surface"] = ToJson(c.surface);
   json["jackknife"] = JackknifeJson(c);
   json["montecarlo"] = MonteCarloJson(c.monte_carlo);
-  json["residuals"] = {{"targets", Json::array()}};
-  for (const TargetSummary& target : c.targets) json["residuals"]["targets"].push_back(ResidualsJson(target));
+  json["residuals"] = ResidualsJson(c);
   json["scene"] = SceneJson(c.targets);
   json["volume"] = c.volume.rows.empty() ? Json::object() : ToJson(c.volume);
   json["data"] = with.data;

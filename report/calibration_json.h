@@ -23,13 +23,17 @@ inline constexpr std::pair<const char*, double MonteCarloParameter::*> kMonteCar
 
 // What the file holds beside the calibration itself.
 struct Enclosures {
-  Comparison comparison{};
   Json data = Json::object();  // Scanner::Data
   Json certificate = nullptr;  // of the data set; null: none
 };
 
 // The whole of calibration.json, and the only place that puts it together.
 Json ToJson(const Calibration& calibration, const Enclosures& with = {});
+
+// What only figures need and the file therefore leaves out, for its data give it again: "compare", "surface",
+// "residuals", and "messages" as older versions kept them in the file. HoldsFigures: one of these.
+Json FiguresToJson(const Calibration& calibration, const Comparison& comparison);
+bool HoldsFigures(const Json& file);
 
 // What a later command needs of it: model, status, parameters with roles and u, covariance, budget, volume, inputs,
 // Monte Carlo. Old files lack some keys: those fields stay empty. null is not a number, or infinite for degrees of

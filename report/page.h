@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include "io/json_file.h"
 #include "io/result.h"
 
 namespace scancal {
@@ -14,8 +15,9 @@ struct PageChoice {
   std::string language = kLanguages[0];
 };
 
-// Of a calibration.json, by the program in report/page (Python, with Jinja2 and Matplotlib), which reads nothing else
-// and writes whole files or none. False: it has said why on standard error. An Error: it could not be started.
-Result<bool> WritePage(const std::filesystem::path& calibration, const PageChoice& choice);
+// Of a calibration.json and FiguresToJson (null: the file has its own), by the program in report/page (Python, with
+// Jinja2 and Matplotlib), which reads nothing else and writes whole files or none. False: it has said why on standard
+// error. An Error: it could not be started.
+Result<bool> WritePage(const std::filesystem::path& calibration, const Json& figures, const PageChoice& choice);
 
 }  // namespace scancal

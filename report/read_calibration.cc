@@ -195,6 +195,8 @@ Result<Calibration> CalibrationFromJson(const Json& json, const std::string& fil
   if (!json.contains("parameters") || !json["parameters"].is_array()) return expected("a list of \"parameters\"");
   Calibration result;
   result.model = json["model"];
+  result.residual = TextAt(json, "residual");
+  result.equal_weights = TextAt(json, "weights") == "equal";
   if (!json.contains("status") || !json["status"].is_string()) return expected("\"status\"");
   if (json["status"] != "ok") result.unreliable.push_back({"the calibration says so of itself"});
   for (const Json& each : json["parameters"]) {

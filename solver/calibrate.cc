@@ -221,7 +221,7 @@ Solution SolveWeighted(const Solution& plain, double least, const RefineOptions&
 
 Calibration Summarize(const Solution& solution, const PureError& pure_error) {
   const Covariance clustered = ClusteredCovariance(solution.problem, solution.linear);
-  const Jackknife jackknife = LeaveOneTargetOut(solution.problem, solution.fit);
+  const Jackknife jackknife = LeaveOneTargetOut(solution.problem, solution.fit, solution.linear);
   const Headline headline = HeadlineOf(solution, clustered);
 
   Calibration result;

@@ -159,6 +159,7 @@ struct HashedFile {
 
 struct Calibration {
   std::string model, name, residual;
+  bool equal_weights = false;          // in place of weights from the variances
   std::vector<Sentence> warnings;      // worth knowing
   std::vector<Sentence> unreliable;    // why not to rely on it; none: status ok
   std::vector<Parameter> parameters;   // every system quantity of role estimate or consider, and the model's main ones

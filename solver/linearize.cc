@@ -1,5 +1,6 @@
 #include "solver/linearize.h"
 #include <glog/logging.h>
+#include <algorithm>
 #include "solver/dense.h"
 
 namespace scancal {
@@ -68,6 +69,50 @@ class AffineRows final : public Rows {
   double count_;
 };
 
+// How many of these blocks, from the first on, are all the rows of something larger, in its order; 0: they are not.
+size_t CountOfWhole(std::span<const Block> blocks) {
+  const Rows* const whole = blocks[0].rows->PartOf().first;
+  int row = 0;
+  for (size_t k = 0; k < blocks.size() && whole; ++k) {
+    const Block& block = blocks[k];
+    if (block.rows->PartOf() != std::pair{whole, row} || block.size() != block.rows->size()) return 0;
+    row += block.size();
+    if (row == whole->size()) return k + 1;
+  }
+  return 0;
+}
+
+// As the blocks one by one.
+void EvaluateWhole(std::span<const Block> blocks, const std::vector<double>& values, std::span<const int> seeds,
+                   Eigen::VectorXd* r, Eigen::MatrixXd* jacobian) {
+  const Rows& whole = *blocks[0].rows->PartOf().first;
+  r->resize(whole.size());
+  if (jacobian) jacobian->resize(whole.size(), std::ssize(seeds));
+  whole.Evaluate(values.data(), nullptr, seeds, r->data(), jacobian && !seeds.empty() ? jacobian->data() : nullptr);
+  const double weight = blocks[0].weight;
+  const bool alike = std::all_of(blocks.begin(), blocks.end(), [&](const Block& block) {
+    return block.weight == weight && !block.mix.size() && !block.offset.size();
+  });
+  if (alike) {
+    *r *= weight;
+    if (jacobian) *jacobian *= weight;
+    return;
+  }
+  Eigen::Index at = 0;
+  for (const Block& block : blocks) {
+    auto own_r = r->segment(at, block.size());
+    if (block.mix.size()) own_r = block.mix * own_r;
+    own_r *= block.weight;
+    if (block.offset.size()) own_r += block.offset;
+    if (jacobian) {
+      auto own_jacobian = jacobian->middleRows(at, block.size());
+      if (block.mix.size()) own_jacobian = block.mix * own_jacobian;
+      own_jacobian *= block.weight;
+    }
+    at += block.size();
+  }
+}
+
 }  // namespace
 
 void Stack(std::span<const Block> blocks, const std::vector<double>& values, std::span<const int> seeds,
@@ -80,14 +125,20 @@ void Stack(std::span<const Block> blocks, const std::vector<double>& values, std
   if (first) first->push_back(rows);
   r->resize(rows);
   if (jacobian) jacobian->resize(rows, std::ssize(seeds));
-  Eigen::VectorXd block_r;
-  Eigen::MatrixXd block_jacobian;
+  Eigen::VectorXd part_r;
+  Eigen::MatrixXd part_jacobian;
   Eigen::Index at = 0;
-  for (const Block& block : blocks) {
-    block.Evaluate(values.data(), seeds, &block_r, jacobian ? &block_jacobian : nullptr);
-    r->segment(at, block_r.size()) = block_r;
-    if (jacobian) jacobian->middleRows(at, block_r.size()) = block_jacobian;
-    at += block_r.size();
+  while (!blocks.empty()) {
+    const size_t count = std::max<size_t>(1, CountOfWhole(blocks));
+    if (count == 1) {
+      blocks[0].Evaluate(values.data(), seeds, &part_r, jacobian ? &part_jacobian : nullptr);
+    } else {
+      EvaluateWhole(blocks.first(count), values, seeds, &part_r, jacobian ? &part_jacobian : nullptr);
+    }
+    r->segment(at, part_r.size()) = part_r;
+    if (jacobian) jacobian->middleRows(at, part_r.size()) = part_jacobian;
+    at += part_r.size();
+    blocks = blocks.subspan(count);
   }
 }
 

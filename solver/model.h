@@ -52,6 +52,15 @@ concept ScannerModel = requires(const M m, const typename M::Target t, const typ
              r);  // template <class T> void Residual(const Target&, const View&, const Seen<T>&, T* rows) const
 };
 
+// Optional: the derivatives in closed form, where dual numbers would be what a user waits for. As Rows::Evaluate for
+// these views of the target, one after the other.
+template <class M>
+concept HasJacobian = ScannerModel<M> &&
+    requires(const M m, const typename M::Target t, std::span<const typename M::View> views, Seen<double> q,
+             std::span<const int> seeds, double* r) {
+  m.Jacobian(t, views, q, seeds, r, r);
+};
+
 // Views made up by a model that stand for the next few of a target's.
 template <class View>
 struct StandIns {
@@ -66,14 +75,22 @@ concept HasNodes = ScannerModel<M> && requires(const M m, const typename M::Targ
   { m.Interpolate(std::vector{v}, v) } -> std::convertible_to<Eigen::MatrixXd>;  // as in Target::interpolation
 };
 
-// Residuals of some views of one target, differentiated forwards by dual numbers of a fixed width (Griewank and
-// Walther, Evaluating Derivatives, 2008, ch. 3; Jet of Ceres).
+// Residuals of some views of one target, differentiated in closed form, or else forwards by dual numbers of a fixed
+// width (Griewank and Walther, Evaluating Derivatives, 2008, ch. 3; Jet of Ceres).
 template <ScannerModel M>
 class ModelRows final : public Rows {
  public:
+  using View = typename M::View;
+  // owner: of the views. part_of, first: see PartOf.
   ModelRows(std::shared_ptr<const M> model, std::shared_ptr<const typename M::Target> target,
-            std::vector<typename M::View> views)
-      : model_(std::move(model)), target_(std::move(target)), views_(std::move(views)) {
+            std::shared_ptr<const void> owner, std::span<const View> views,
+            std::shared_ptr<const Rows> part_of = nullptr, int first = 0)
+      : model_(std::move(model)),
+        target_(std::move(target)),
+        owner_(std::move(owner)),
+        views_(views),
+        part_of_(std::move(part_of)),
+        first_(first) {
     for (const auto& view : views_) {
       points_ += model_->Points(view);
       count_ += model_->Count(view);
@@ -87,6 +104,17 @@ class ModelRows final : public Rows {
                 double* jacobian) const override {
     const int quantities = static_cast<int>(model_->quantities().size());
     if (!jacobian) return Call(Seen<double>{q, point, quantities}, r);
+    if constexpr (HasJacobian<M>) {
+      model_->Jacobian(*target_, views_, Seen<double>{q, point, quantities}, seeds, r, jacobian);
+    } else {
+      EvaluateByJets(q, point, quantities, seeds, r, jacobian);
+    }
+  }
+  std::pair<const Rows*, int> PartOf() const override { return {part_of_.get(), first_}; }
+
+ private:
+  void EvaluateByJets(const double* q, const double* point, int quantities, std::span<const int> seeds, double* r,
+                      double* jacobian) const {
     constexpr int kWidth = 8;
     using Jet = ceres::Jet<double, kWidth>;
     std::vector<Jet> x(q, q + quantities), rows(size());
@@ -102,10 +130,9 @@ class ModelRows final : public Rows {
     }
   }
 
- private:
   template <class T>
   void Call(Seen<T> q, T* r) const {
-    for (const auto& view : views_) {
+    for (const View& view : views_) {
       model_->Residual(*target_, view, q, r);
       r += model_->Points(view) * M::kRowsPerPoint;
       if (q.point) q.point += model_->Points(view) * q.count;
@@ -114,7 +141,10 @@ class ModelRows final : public Rows {
 
   std::shared_ptr<const M> model_;
   std::shared_ptr<const typename M::Target> target_;
-  std::vector<typename M::View> views_;
+  std::shared_ptr<const void> owner_;
+  std::span<const View> views_;
+  std::shared_ptr<const Rows> part_of_;
+  int first_;
   int points_ = 0;
   double count_ = 0;
 };
@@ -127,15 +157,23 @@ Problem MakeProblem(const std::shared_ptr<const M>& model, std::vector<typename 
     const auto shared = std::make_shared<const typename M::Target>(std::move(each));
     Target& target = problem.targets.emplace_back();
     target.name = shared->name;
-    for (const auto& view : shared->views)
-      target.views.push_back({std::make_shared<ModelRows<M>>(model, shared, std::vector{view}), 1, {}, {}, {}});
+    using View = typename M::View;
+    const std::span<const View> views = shared->views;
+    const auto all = std::make_shared<ModelRows<M>>(model, shared, shared, views);
+    for (size_t v = 0, row = 0; v < views.size(); ++v) {
+      const auto rows =
+          std::make_shared<ModelRows<M>>(model, shared, shared, views.subspan(v, 1), all, static_cast<int>(row));
+      row += static_cast<size_t>(rows->size());
+      target.views.push_back({rows, 1, {}, {}, {}});
+    }
     if constexpr (HasNodes<M>) {
       size_t view = 0;
-      for (const auto& [nodes, views] : model->MakeNodes(*shared)) {
-        target.nodes.push_back({std::make_shared<ModelRows<M>>(model, shared, nodes), 1, {}, {}, {}});
+      for (auto& [nodes, stand_for] : model->MakeNodes(*shared)) {
+        const auto made = std::make_shared<const std::vector<View>>(std::move(nodes));
+        target.nodes.push_back({std::make_shared<ModelRows<M>>(model, shared, made, *made), 1, {}, {}, {}});
         auto& interpolation = target.interpolation.emplace_back();
-        for (const size_t end = view + views; view < end; ++view)
-          interpolation.push_back(model->Interpolate(nodes, shared->views[view]));
+        for (const size_t end = view + stand_for; view < end; ++view)
+          interpolation.push_back(model->Interpolate(*made, views[view]));
       }
     }
   }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace scancal {
@@ -52,6 +53,9 @@ class Rows {
   // the column of a quantity of point scope is the derivative of each row by its own point's value.
   virtual void Evaluate(const double* q, const double* point, std::span<const int> seeds, double* r,
                         double* jacobian) const = 0;
+  // Optional: larger rows of which these are some, in the same order, and the first of these among them. Neighbours are
+  // then evaluated at once.
+  virtual std::pair<const Rows*, int> PartOf() const { return {nullptr, 0}; }
 };
 
 // residual = weight * mix * r(q) + offset. An empty mix is the identity, an empty offset zero.

@@ -1,5 +1,5 @@
-// Joint refinement: Ceres' Levenberg-Marquardt (Marquardt 1963) to the neighbourhood, Gauss-Newton by QR to the last
-// digits.
+// Joint refinement: Gauss-Newton to the last digits; where that does not settle, Ceres' Levenberg-Marquardt (Marquardt
+// 1963) to the neighbourhood first.
 #pragma once
 #include "solver/linearize.h"
 #include "solver/problem.h"
@@ -7,8 +7,12 @@
 
 namespace scancal {
 
-// How the step is found once the targets' own quantities are eliminated (Schur): both give the same.
-enum class Elimination { kDense, kSparse, kByTargets };  // kByTargets: sparse (SuiteSparse) beyond a hundred targets
+// How Ceres finds the step once the targets' own quantities are eliminated (Schur): both give the same.
+enum class Elimination {
+  kDense,  // Ceres from the start
+  kSparse,
+  kByTargets  // where Ceres is needed, sparse (SuiteSparse) beyond a hundred targets
+};
 
 struct RefineOptions {
   int max_iterations = 100;
@@ -18,7 +22,7 @@ struct RefineOptions {
 struct Fit {
   Estimate estimate;
   double cost = 0;         // sum of squares of all weighted residuals, priors among them
-  int iterations = 0;      // Ceres' and the polishing ones
+  int iterations = 0;      // Gauss-Newton's, and Ceres' where it was needed
   bool converged = false;  // the last step is below 1e-12 of every system quantity, below 1e-3 of its uncertainty, or
                            // rounding: below 1e-10 of every system quantity and of no use
   Sentence message;        // why not
@@ -27,10 +31,11 @@ struct Fit {
 // Which storey carries the fit: the nodes where they are exact, else the views.
 Storey FitStorey(const Problem& problem);
 
-// Minimises the sum of squares of all rows and priors over the estimated quantities of system and target scope. One
-// residual block a target; the targets' own quantities are eliminated (Schur). Ceres' normal equations stop at about
-// 1e-8 of the uncertainty, so Gauss-Newton steps by QR finish: until a step is below 1e-10 of the uncertainty, or
-// rounding. One thread: the same digits everywhere.
+// Minimises the sum of squares of all rows and priors over the estimated quantities of system and target scope; the
+// targets' own quantities are eliminated (Schur). From a good start a few Gauss-Newton steps suffice: until a step is
+// below 1e-10 of the uncertainty, or rounding. Where one of them makes the residuals larger, Ceres begins again, with a
+// residual block a target; it stops at about 1e-8 of the uncertainty, and Gauss-Newton finishes. One thread: the same
+// digits everywhere.
 Fit Refine(const Problem& problem, const Estimate& start, const RefineOptions& options = {});
 
 }  // namespace scancal

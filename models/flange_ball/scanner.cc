@@ -23,6 +23,8 @@ constexpr Message<std::string_view> kSpacingAt{"flange_ball.spacing_at", "spacin
 constexpr Message<> kNominalFitted{"flange_ball.nominal_fitted", "nominal, ball fitted", "nominell, Kugel angepasst"};
 constexpr Message<> kRefined{"flange_ball.refined", "refined", "verfeinert"};
 
+constexpr char kResidual[] = "ball in socket";
+
 double Poses(const std::vector<Model::Target>& tools) {
   double poses = 0;
   for (const Model::Target& tool : tools) poses += static_cast<double>(tool.views.size());
@@ -128,11 +130,11 @@ Result<Solution> Scanner::Fit(const RefineChoice& choice) const {
 }
 
 Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
-  SCANCAL_RETURN_IF_ERROR(CheckOnlyResidual(choice, "the position of the ball in its socket"));
+  SCANCAL_RETURN_IF_ERROR(CheckOnlyResidual(choice, kResidual));
   SCANCAL_RETURN_IF_ERROR(CheckMonteCarlo(choice, !choice.equal_weights));
   const Stopwatch watch;
   SCANCAL_ASSIGN_OR_RETURN(const Solution solution, Fit(choice));
-  const Refined refined{.solution = solution, .residual = "ball in socket", .seconds = watch.Seconds()};
+  const Refined refined{.solution = solution, .residual = kResidual, .seconds = watch.Seconds()};
   Calibration result = Conclude(declaration_.dataset, refined, choice.monte_carlo);
   const Robot nominal = FitBall(declaration_.model.links(), targets_),
               robot = RobotOf(declaration_.model.links(), solution);

@@ -1,6 +1,8 @@
 #include "models/line/robust_line.h"
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include "models/median.h"
@@ -20,7 +22,8 @@ struct Ordered {
 Ordered OrderedSubsample(std::span<const double> y, std::span<const double> z) {
   std::vector<size_t> order(y.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return z[a] != z[b] ? z[a] < z[b] : y[a] < y[b]; });
+  const auto before = [&](size_t a, size_t b) { return z[a] != z[b] ? z[a] < z[b] : y[a] < y[b]; };
+  if (!std::is_sorted(order.begin(), order.end(), before)) std::sort(order.begin(), order.end(), before);
   const size_t n = std::min(order.size(), kSubsample);
   Ordered sample;
   for (size_t k = 0; k < n; ++k) {
@@ -38,6 +41,13 @@ double MedianDistance(const RobustLine& line, std::span<const double> y, std::sp
   const auto middle = buffer->begin() + std::ssize(*buffer) / 2;
   std::nth_element(buffer->begin(), middle, buffer->end());
   return *middle;
+}
+
+// Whether MedianDistance would be below `least`: counting is much faster than finding it.
+bool IsNearer(const RobustLine& line, std::span<const double> y, std::span<const double> z, double least) {
+  size_t near = 0;
+  for (size_t i = 0; i < y.size(); ++i) near += std::abs(line.Distance(y[i], z[i])) < least;
+  return near > y.size() / 2;
 }
 
 RobustLine Through(const Ordered& points, size_t i, size_t j) {
@@ -61,6 +71,22 @@ RobustLine Refit(const RobustLine& line, double within, std::span<const double> 
   return {line.y0 + my, line.z0 + mz, std::sin(angle), std::cos(angle), 0};
 }
 
+// Whether at most half of the values differ from all before them; stops as soon as more do.
+bool Repeats(std::span<const double> values) {
+  std::vector<double> seen(std::bit_ceil(2 * values.size() + 1), std::numeric_limits<double>::quiet_NaN());
+  size_t different = 0;
+  for (const double value : values) {
+    constexpr uint64_t kGolden = 0x9e3779b97f4a7c15;  // Knuth, The Art of Computer Programming, 6.4
+    const double plain = value + 0.0;                 // one zero
+    size_t at = (std::bit_cast<uint64_t>(plain) * kGolden >> 20) & (seen.size() - 1);
+    while (!std::isnan(seen[at]) && seen[at] != plain) at = (at + 1) & (seen.size() - 1);
+    if (seen[at] == plain) continue;
+    seen[at] = plain;
+    if (2 * ++different > values.size()) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 RobustLine FitRobustLine(std::span<const double> y, std::span<const double> z) {
@@ -75,11 +101,9 @@ RobustLine FitRobustLine(std::span<const double> y, std::span<const double> z) {
   for (const size_t apart : {size / 2, size / 3}) {
     for (size_t i = 0; i + apart < size; ++i) {
       const RobustLine line = Through(sample, i, i + apart);
-      const double median = MedianDistance(line, sample.y, sample.z, &buffer);
-      if (median < least) {
-        least = median;
-        best = line;
-      }
+      if (!IsNearer(line, sample.y, sample.z, least)) continue;
+      least = MedianDistance(line, sample.y, sample.z, &buffer);
+      best = line;
     }
   }
   // The small-sample factor of Rousseeuw and Leroy (1987), 5.2.
@@ -94,6 +118,7 @@ RobustLine FitRobustLine(std::span<const double> y, std::span<const double> z) {
 }
 
 double Resolution(std::span<const double> values) {
+  if (!Repeats(values)) return 0;
   std::vector<double> sorted(values.begin(), values.end());
   std::sort(sorted.begin(), sorted.end());
   double least = std::numeric_limits<double>::infinity();

@@ -10,6 +10,8 @@
 namespace scancal::robot_ball {
 namespace {
 
+constexpr char kResidual[] = "ball centre";
+
 Eigen::Vector3d MeanOf(const std::vector<Model::SeenBall>& balls) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Model::SeenBall& ball : balls) sum += ball.centre;
@@ -84,7 +86,7 @@ void AddCheck(const Measurements& data, const Kinematics& before, const Kinemati
 }  // namespace
 
 Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
-  SCANCAL_RETURN_IF_ERROR(CheckOnlyResidual(choice, "the vector of a ball's centre"));
+  SCANCAL_RETURN_IF_ERROR(CheckOnlyResidual(choice, kResidual));
   if (choice.equal_weights)
     return Error{
         "weights: found equal, but the balls of a pose share its repeatability: they cannot be weighed equally"};
@@ -93,10 +95,8 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   const Stopwatch watch;
   SCANCAL_ASSIGN_OR_RETURN(const JointFit fit,
                            FitJointly(data, model_, start.flange_from_scanner, choice.max_iterations));
-  const Refined refined{.solution = fit.solution,
-                        .residual = "ball centre",
-                        .seconds = watch.Seconds(),
-                        .warnings = declaration_.warnings};
+  const Refined refined{
+      .solution = fit.solution, .residual = kResidual, .seconds = watch.Seconds(), .warnings = declaration_.warnings};
   Calibration result = Conclude(declaration_.dataset, refined, choice.monte_carlo);
   AddGeometry(fit, &result);
   AddTables(data, fit, &result);

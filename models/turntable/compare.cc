@@ -21,10 +21,9 @@ constexpr Message<> kOnEdge{"turntable.on_edge", "minimum on the edge", "Minimum
 constexpr Message<std::string_view> kUndetermined{"turntable.undetermined", "not determined: {}", "nicht bestimmt: {}"};
 constexpr Message<> kUnconverged{"turntable.unconverged", "no convergence", "keine Konvergenz"};
 
-constexpr double kGridSteps[] = {1, 0.1, 0.01};  // mm: the published one, and what finer ones bring
-constexpr double kMostNodes = 1e8;               // about a minute
-constexpr double kFewPlanes = 2e6;               // fitted on a grid: as long as a refinement
-constexpr double kFewLeftOut = 2e4;              // profiles refitted with each placement left out
+constexpr double kMostNodes = 1e8;   // about a minute
+constexpr double kFewPlanes = 2e6;   // fitted on a grid: as long as a refinement
+constexpr double kFewLeftOut = 2e4;  // profiles refitted with each placement left out
 
 constexpr size_t kParameters = 4;
 std::vector<double> Values(const System& system) {
@@ -141,7 +140,7 @@ MethodResult GridRow(const Scanner& scanner, const Start& start, double step, Pl
 
 System FoundWithout(const Scanner& scanner, const Start& start, Model::Residuals residuals, bool weighted,
                     const std::vector<int>& estimate, size_t out) {
-  const JointFit fit = scanner.Fit(start.system, residuals, estimate, out);
+  const JointFit fit = scanner.Fit(start.system, residuals, {.estimate = estimate, .without = out});
   return weighted ? scanner.FitWeighted(fit).Found() : fit.Found();
 }
 
@@ -155,7 +154,7 @@ bool HoldsOut(const std::vector<Placement>& placements, const CompareChoice& cho
 MethodResult JointRow(const Scanner& scanner, const Start& start, const Sentence& name, Model::Residuals residuals,
                       bool weighted, const std::vector<int>& estimate, const CompareChoice& choice) {
   const Stopwatch watch;
-  JointFit fit = scanner.Fit(start.system, residuals, estimate);
+  JointFit fit = scanner.Fit(start.system, residuals, {.estimate = estimate});
   const bool determined = fit.solution.observability.undetermined.empty();
   if (weighted && determined) fit = scanner.FitWeighted(fit);
   MethodResult row;
@@ -192,7 +191,7 @@ Result<Comparison> Scanner::Compare(const CompareChoice& choice) const {
   SCANCAL_ASSIGN_OR_RETURN(const Start start, FindStart());
   std::vector<MethodResult> results;
   for (const PlaneFit kind : {PlaneFit::kVertical, PlaneFit::kOrthogonal})
-    for (const double step : kGridSteps) results.push_back(GridRow(*this, start, step, kind, choice));
+    for (const double step : choice.steps) results.push_back(GridRow(*this, start, step, kind, choice));
   using enum Model::Residuals;
   results.push_back(JointRow(*this, start, Say(kJointPlane), kPlane, false, {}, choice));
   results.push_back(JointRow(*this, start, Say(kJointDepth), kDepth, false, {}, choice));

@@ -3,6 +3,8 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <deque>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -27,24 +29,6 @@ struct RawProfile {
 
 void OrderAlongLine(RawProfile* profile);  // by z; points at one z keep their order
 
-struct RawScan {
-  std::string name;                  // of the target
-  std::vector<RawProfile> profiles;  // in the order of their keys
-  double missing = 0;                // no return
-  double off_line = 0;               // removed by Clean: off the line of their profile
-  Sentence warning;                  // empty: none
-};
-
-// Reads the points that `keep` keeps. With a column `profile` its values group the points, in any order; without it a
-// change of the angle starts a profile.
-Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense);
-
-// One batch of a scan as points of the sensor: columns angle (rad, by the sense), y, z, and range for a lidar.
-struct SensorColumns {
-  std::vector<double> alpha, y, z, range;
-};
-SensorColumns ToSensor(double sense, const ScanBatch& batch);
-
 inline constexpr int kSegments = 8;
 
 struct Profile {
@@ -68,6 +52,25 @@ Profile CompressProfile(double alpha, std::span<const double> y, std::span<const
 
 // Of points of the profile, from its own least-squares line: along depth (a lidar's along the range), mm.
 std::vector<double> ResidualsFromLine(const Profile& profile, std::span<const double> y, std::span<const double> z);
+
+struct RawScan {
+  std::string name;                  // of the target
+  std::vector<RawProfile> profiles;  // in the order of their keys
+  std::vector<Profile> compressed;   // each of them, after Clean
+  double missing = 0;                // no return
+  double off_line = 0;               // removed by Clean: off the line of their profile
+  Sentence warning;                  // empty: none
+};
+
+// Reads the points that `keep` keeps. With a column `profile` its values group the points, in any order; without it a
+// change of the angle starts a profile. progress: told the finished fraction.
+Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense, const std::function<void(double)>& progress);
+
+// One batch of a scan as points of the sensor: columns angle (rad, by the sense), y, z, and range for a lidar.
+struct SensorColumns {
+  std::vector<double> alpha, y, z, range;
+};
+void ToSensor(double sense, const ScanBatch& batch, SensorColumns* points);
 
 // The profiles as the model sees them, with the columns of errors that move a profile's line.
 std::vector<Model::View> Views(const std::vector<Profile>& profiles, Model::Residuals residuals);
@@ -115,11 +118,19 @@ struct ScannedVolume {
 // A profile is taken to end where an evenly spaced line of the same mean and spread does: its points are gone.
 ScannedVolume VolumeOf(const std::vector<Placement>& placements);
 
-// Orders the points of each profile along z and removes what is off its own line.
+// Orders the points of each profile along z, removes what is off its own line, and compresses the rest.
 void Clean(RawScan* scan);
 
-// Sets aside what is off the plane of most profiles, as `system` sees it, and compresses the rest.
-Placement CompressPlacement(const RawScan& scan, const System& system);
+// What is left of a clean scan without what is off the plane of most profiles, as `system` sees it.
+struct PointsOnPlane {
+  double off = 0;                           // points removed
+  std::vector<const RawProfile*> profiles;  // of the scan, or of `changed`
+  std::vector<Profile> compressed;          // each of them
+  std::deque<RawProfile> changed;           // profiles that have lost points
+};
+PointsOnPlane SetAsideOffPlane(const RawScan& scan, const System& system);
+Placement MakePlacement(const RawScan& scan, const PointsOnPlane& points);  // without lag_sums and histogram
+void LookAtResiduals(const PointsOnPlane& points, Placement* placement);    // adds them
 
 // {"layout": what follows in plain words, "targets": [...], "sha256": of the text of segments, "segments": base64 of
 // little-endian float64}: what a result is recomputed from, years later and without the points. Every digit is kept:

@@ -26,13 +26,15 @@ void DeclareLineCorrelation(const Declaration& declaration, const std::vector<Pl
   }
 }
 
+// To the estimate.
+bool Matters(const Quantity& quantity) { return quantity.role == Role::kEstimate || quantity.value != 0; }
+
 }  // namespace
 
-JointFit Scanner::Fit(const System& system, Model::Residuals residuals, const std::vector<int>& estimate,
-                      std::optional<size_t> without, int max_iterations) const {
+JointFit Scanner::Fit(const System& system, Model::Residuals residuals, const FitChoice& choice) const {
   JointFit fit;
   std::vector<Placement> placements = placements_;
-  if (without) placements.erase(placements.begin() + static_cast<std::ptrdiff_t>(*without));
+  if (choice.without) placements.erase(placements.begin() + static_cast<std::ptrdiff_t>(*choice.without));
   fit.depths = system.depths;
   const std::vector<PlaneStorey> storeys = StoreysOf(placements, system);
   double rms = kLeastSigma_mm;
@@ -42,7 +44,7 @@ JointFit Scanner::Fit(const System& system, Model::Residuals residuals, const st
   fit.sigma = residuals == Model::Residuals::kDepth && pure > kLeastSigma_mm ? pure : rms;
   const auto model = std::make_shared<Model>(residuals);
   for (int k = 0; k < std::ssize(model_.quantities()); ++k) model->quantity(k) = model_.quantities()[k];
-  for (const int k : estimate) model->quantity(k).role = Role::kEstimate;
+  for (const int k : choice.estimate) model->quantity(k).role = Role::kEstimate;
   DeclareLineCorrelation(declaration_, placements, model.get());
   for (size_t t = 0; t < placements.size(); ++t) {
     Model::Target& target = fit.targets.emplace_back();
@@ -50,10 +52,10 @@ JointFit Scanner::Fit(const System& system, Model::Residuals residuals, const st
     target.views = Views(placements[t].profiles, residuals);
     const auto [normal, distance] = storeys[t].FitPlane(system.M(), system.N());
     Model::SetPlane(normal, distance, &target);
-    if (residuals == Model::Residuals::kDepth) AddForm(placements[t].profiles, system, normal, distance, &target.views);
-    const Quantity& linearity = model->quantities()[Model::kLinearity];
-    if (residuals == Model::Residuals::kDepth || linearity.role != Role::kHold || linearity.value != 0)
-      AddBend(system, placements[t].profiles, &target.views);
+    const bool all = choice.influences && residuals == Model::Residuals::kDepth;
+    if (all || Matters(model->quantities()[Model::kForm]))
+      AddForm(placements[t].profiles, system, normal, distance, &target.views);
+    if (all || Matters(model->quantities()[Model::kLinearity])) AddBend(system, placements[t].profiles, &target.views);
   }
   Problem problem = MakeProblem<Model>(model, fit.targets);
   problem.WeighEqually(fit.sigma);
@@ -61,7 +63,7 @@ JointFit Scanner::Fit(const System& system, Model::Residuals residuals, const st
   std::vector<double> values = Values(problem, from, 0);
   std::copy(system.q.begin(), system.q.end(), values.begin());
   SetValues(problem, values, 0, &from);
-  fit.solution = Solve(std::move(problem), from, {max_iterations});
+  fit.solution = Solve(std::move(problem), from, {choice.max_iterations});
   return fit;
 }
 

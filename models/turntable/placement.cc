@@ -10,6 +10,7 @@
 #include "models/line/robust_line.h"
 #include "models/median.h"
 #include "models/turntable/compress.h"
+#include "solver/parallel.h"
 
 namespace scancal::turntable {
 namespace {
@@ -30,36 +31,58 @@ double Extent(const RawProfile& profile) {
   return std::hypot(*y1 - *y0, *z1 - *z0);
 }
 
-// Removes the points whose distance is larger; returns how many.
-double KeepWithin(const std::vector<double>& distances, double within, RawProfile* profile) {
+// Which points lie farther away; empty if none does.
+std::vector<bool> Beyond(double within, std::span<const double> distances) {
+  std::vector<bool> beyond;
+  for (size_t i = 0; i < distances.size(); ++i) {
+    if (!(distances[i] > within)) continue;
+    beyond.resize(distances.size());
+    beyond[i] = true;
+  }
+  return beyond;
+}
+
+void Remove(const std::vector<bool>& points, RawProfile* profile) {
   for (auto* column : {&profile->y, &profile->z, &profile->range}) {
     size_t i = 0;
-    std::erase_if(*column, [&](double) { return distances[i++] > within; });
+    std::erase_if(*column, [&](double) { return points[i++]; });
   }
-  return static_cast<double>(std::count_if(distances.begin(), distances.end(), [&](double d) { return d > within; }));
+}
+
+double CountOf(const std::vector<bool>& points) {
+  return static_cast<double>(std::count(points.begin(), points.end(), true));
 }
 
 // Removes the points off each profile's own line. A profile's scale is never taken smaller than the placement's median,
 // nor than the steps in which the sensor measures.
 double SetAsideOffLine(std::vector<RawProfile>* profiles) {
-  std::vector<RobustLine> lines;
+  std::vector<RobustLine> lines(profiles->size());
+  std::vector<double> resolution(profiles->size());
+  InParallel(profiles->size(), 0, [&](size_t k) {
+    const RawProfile& profile = (*profiles)[k];
+    lines[k] = FitRobustLine(profile.y, profile.z);
+    if (profile.y.size() >= kFewestPoints)
+      resolution[k] = Resolution(profile.range.empty() ? profile.y : profile.range);
+  });
   std::vector<double> scales, resolutions;
-  for (const RawProfile& profile : *profiles) {
-    lines.push_back(FitRobustLine(profile.y, profile.z));
-    if (profile.y.size() < kFewestPoints) continue;
-    scales.push_back(lines.back().scale);
-    resolutions.push_back(Resolution(profile.range.empty() ? profile.y : profile.range));
+  for (size_t k = 0; k < profiles->size(); ++k) {
+    if ((*profiles)[k].y.size() < kFewestPoints) continue;
+    scales.push_back(lines[k].scale);
+    resolutions.push_back(resolution[k]);
   }
   const double common = std::max(Median(scales), Median(resolutions));
   double removed = 0;
+  std::vector<double> distances;
   for (size_t k = 0; k < profiles->size(); ++k) {
     RawProfile& profile = (*profiles)[k];
     if (profile.y.size() < kFewestPoints) continue;
     const double within = std::max(kOff * std::max(lines[k].scale, common), kRounding * Extent(profile));
-    std::vector<double> distances;
-    for (size_t i = 0; i < profile.y.size(); ++i)
-      distances.push_back(std::abs(lines[k].Distance(profile.y[i], profile.z[i])));
-    removed += KeepWithin(distances, within, &profile);
+    distances.resize(profile.y.size());
+    for (size_t i = 0; i < distances.size(); ++i)
+      distances[i] = std::abs(lines[k].Distance(profile.y[i], profile.z[i]));
+    const std::vector<bool> off = Beyond(within, distances);
+    if (!off.empty()) Remove(off, &profile);
+    removed += CountOf(off);
   }
   return removed;
 }
@@ -154,39 +177,15 @@ RobustPlane FitRobustPlane(const std::vector<Profile>& profiles, const System& s
   return result;
 }
 
-// Removes the points off the plane of most profiles, by the distances' own robust scale.
-double SetAsideOffPlane(const System& system, std::vector<RawProfile>* profiles) {
-  std::vector<Profile> compressed;
-  for (const RawProfile& profile : *profiles)
-    compressed.push_back(CompressProfile(profile.alpha, profile.y, profile.z, {}));
-  const RobustPlane plane = FitRobustPlane(compressed, system);
-  std::vector<std::vector<double>> distances;
-  std::vector<double> on;
-  for (size_t k = 0; k < profiles->size(); ++k) {
-    const RawProfile& profile = (*profiles)[k];
-    std::vector<double>& of_profile = distances.emplace_back();
-    const ProfileInTable<double> in_table = system.At(profile.alpha);
-    for (size_t i = 0; i < profile.y.size(); ++i)
-      of_profile.push_back(
-          std::abs(plane.Distance(in_table.Point(profile.y[i], profile.z[i], system.Bend(profile.y[i])))));
-    if (!plane.off[k]) on.insert(on.end(), of_profile.begin(), of_profile.end());
-  }
-  const double within = std::max(kOff * kMadToSigma * Median(on), kRounding * Extent(profiles->front()));
-  double removed = 0;
-  for (size_t k = 0; k < profiles->size(); ++k) removed += KeepWithin(distances[k], within, &(*profiles)[k]);
-  std::erase_if(*profiles, [](const RawProfile& profile) { return profile.y.empty(); });
-  return removed;
-}
-
-void LookAtResiduals(const std::vector<RawProfile>& raw, Placement* placement) {
-  placement->histogram.scale = placement->Pure().sigma();
-  for (size_t k = 0; k < raw.size(); ++k) {
-    const Profile& profile = placement->profiles[k];
-    if (profile.pure_error.dof == 0) continue;
-    const std::vector<double> residuals = ResidualsFromLine(profile, raw[k].y, raw[k].z);
-    placement->lag_sums.Add(residuals);
-    placement->histogram.Add(residuals);
-  }
+// Of a profile's points from a plane, as the system sees them.
+void DistancesFrom(const RobustPlane& plane, const System& system, const RawProfile& profile, std::span<double> to) {
+  const ProfileInTable<double> in_table = system.At(profile.alpha);
+  const Eigen::Vector3d n = in_table.TurnedBack(plane.normal);
+  const double at_origin = n.dot(in_table.origin) - plane.normal.dot(plane.through);
+  const double by_y = n.dot(in_table.along_y), by_z = n.dot(in_table.along_z), by_bend = n.dot(in_table.along_bend);
+  for (size_t i = 0; i < to.size(); ++i) to[i] = at_origin + by_y * profile.y[i] + by_z * profile.z[i];
+  for (size_t i = 0; i < to.size() && by_bend != 0; ++i) to[i] += by_bend * system.Bend(profile.y[i]);
+  for (double& distance : to) distance = std::abs(distance);
 }
 
 bool Within(double value, const std::array<double, 2>& range) {
@@ -227,25 +226,75 @@ PureError PureOf(const std::vector<Placement>& placements) {
 }
 
 void Clean(RawScan* scan) {
-  for (RawProfile& profile : scan->profiles) OrderAlongLine(&profile);
+  InParallel(scan->profiles.size(), 0, [&](size_t k) { OrderAlongLine(&scan->profiles[k]); });
   scan->off_line = SetAsideOffLine(&scan->profiles);
+  scan->compressed.resize(scan->profiles.size());
+  InParallel(scan->profiles.size(), 0, [&](size_t k) {
+    const RawProfile& profile = scan->profiles[k];
+    scan->compressed[k] = CompressProfile(profile.alpha, profile.y, profile.z, profile.range);
+  });
 }
 
-Placement CompressPlacement(const RawScan& scan, const System& system) {
+PointsOnPlane SetAsideOffPlane(const RawScan& scan, const System& system) {
+  const RobustPlane plane = FitRobustPlane(scan.compressed, system);
+  size_t points = 0;
+  for (const RawProfile& profile : scan.profiles) points += profile.y.size();
+  std::vector<double> on(points);
+  points = 0;
+  for (size_t k = 0; k < scan.profiles.size(); ++k) {
+    if (plane.off[k]) continue;
+    const RawProfile& profile = scan.profiles[k];
+    DistancesFrom(plane, system, profile, std::span(on).subspan(points, profile.y.size()));
+    points += profile.y.size();
+  }
+  on.resize(points);
+  const double within = std::max(kOff * kMadToSigma * Median(std::move(on)), kRounding * Extent(scan.profiles.front()));
+  std::vector<double> distances;
+  PointsOnPlane left;
+  for (size_t k = 0; k < scan.profiles.size(); ++k) {
+    const RawProfile& profile = scan.profiles[k];
+    distances.resize(profile.y.size());
+    DistancesFrom(plane, system, profile, distances);
+    const std::vector<bool> off = Beyond(within, distances);
+    if (off.empty()) {
+      left.profiles.push_back(&profile);
+      left.compressed.push_back(scan.compressed[k]);
+      continue;
+    }
+    left.off += CountOf(off);
+    RawProfile rest = profile;
+    Remove(off, &rest);
+    if (rest.y.empty()) continue;
+    left.compressed.push_back(CompressProfile(rest.alpha, rest.y, rest.z, rest.range));
+    left.changed.push_back(std::move(rest));
+    left.profiles.push_back(&left.changed.back());
+  }
+  return left;
+}
+
+Placement MakePlacement(const RawScan& scan, const PointsOnPlane& points) {
   Placement placement;
   placement.name = scan.name;
   placement.missing = scan.missing;
   placement.warning = scan.warning;
   if (scan.off_line > 0) placement.set_aside[kReasonOffLine] = scan.off_line;
-  std::vector<RawProfile> profiles = scan.profiles;
-  if (const double off = SetAsideOffPlane(system, &profiles); off > 0) placement.set_aside[kReasonOffPlane] = off;
-  for (const RawProfile& profile : profiles) {
-    for (const auto* column : {&profile.y, &profile.z})
+  if (points.off > 0) placement.set_aside[kReasonOffPlane] = points.off;
+  placement.profiles = points.compressed;
+  for (const RawProfile* profile : points.profiles)
+    for (const auto* column : {&profile->y, &profile->z})
       for (const double value : *column) placement.largest = std::max(placement.largest, std::abs(value));
-    placement.profiles.push_back(CompressProfile(profile.alpha, profile.y, profile.z, profile.range));
-  }
-  LookAtResiduals(profiles, &placement);
   return placement;
+}
+
+void LookAtResiduals(const PointsOnPlane& points, Placement* placement) {
+  placement->histogram.scale = placement->Pure().sigma();
+  for (size_t k = 0; k < points.profiles.size(); ++k) {
+    const Profile& profile = placement->profiles[k];
+    if (profile.pure_error.dof == 0) continue;
+    const std::vector<double> residuals = ResidualsFromLine(profile, points.profiles[k]->y, points.profiles[k]->z);
+    placement->lag_sums.Add(residuals);
+    placement->histogram.Add(residuals);
+  }
 }
 
 void ScannedVolume::Extend(double at_alpha, double at_y, double at_z) {

@@ -121,14 +121,23 @@ template <class ValuesAt>
 Eigen::MatrixXd AsLine(const Profile& profile, const Model::View& view, Eigen::Index columns,
                        const ValuesAt& values_at) {
   const std::vector<PseudoPoint> points = PointsOf(profile);
-  Eigen::MatrixXd line(std::ssize(points), 2), values(std::ssize(points), columns), rows(std::ssize(view.points), 2);
-  for (Eigen::Index i = 0; i < line.rows(); ++i) {
-    line.row(i) = points[i].weight * Eigen::RowVector2d(1, points[i].z);
-    values.row(i) = points[i].weight * values_at(points[i]);
+  const double count = profile.factor(0, 0) * profile.factor(0, 0),
+               middle = profile.factor(0, 1) / profile.factor(0, 0);
+  Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(columns), slope = mean;
+  double squares = 0;
+  for (const PseudoPoint& p : points) {
+    const double weight = p.weight * p.weight, z = p.z - middle;
+    const Eigen::RowVectorXd value = weight * values_at(p);
+    mean += value / count;
+    slope += z * value;
+    squares += weight * z * z;
   }
+  const bool level = squares <= count * kNoExtent_mm * kNoExtent_mm;  // no slope, and none is asked for
+  if (!level) slope /= squares;
+  Eigen::MatrixXd rows(std::ssize(view.points), columns);
   for (Eigen::Index i = 0; i < rows.rows(); ++i)
-    rows.row(i) = view.points[i].weight * Eigen::RowVector2d(1, view.points[i].z);
-  return WithoutPureError(view, rows * LeastSquares(line, values));
+    rows.row(i) = view.points[i].weight * (level ? mean : mean + (view.points[i].z - middle) * slope);
+  return WithoutPureError(view, rows);
 }
 
 }  // namespace

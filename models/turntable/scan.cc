@@ -5,7 +5,6 @@
 #include <numeric>
 #include <set>
 #include "io/message.h"
-#include "io/progress.h"
 #include "models/line/moments.h"
 #include "models/turntable/compress.h"
 
@@ -64,8 +63,12 @@ class Gatherer {
 
  private:
   RawProfile* ByAngle(double alpha) {
-    if (profiles_.empty() || profiles_.back().alpha != alpha)
+    if (profiles_.empty() || profiles_.back().alpha != alpha) {
+      const size_t like_the_last = profiles_.empty() ? 0 : profiles_.back().y.size();
       profiles_.push_back({static_cast<double>(profiles_.size()), alpha, {}, {}, {}});
+      profiles_.back().y.reserve(like_the_last);
+      profiles_.back().z.reserve(like_the_last);
+    }
     return &profiles_.back();
   }
   RawProfile* ByKey(double key, double alpha) {
@@ -106,35 +109,33 @@ void OrderAlongLine(RawProfile* profile) {
     for (size_t i = 0; i < (from.*column).size(); ++i) (profile->*column)[i] = (from.*column)[order[i]];
 }
 
-SensorColumns ToSensor(double sense, const ScanBatch& batch) {
-  SensorColumns points;
-  points.alpha = batch.columns[batch.Find("angle")];
-  for (double& alpha : points.alpha) alpha *= sense;
+void ToSensor(double sense, const ScanBatch& batch, SensorColumns* points) {
+  points->alpha = batch.columns[batch.Find("angle")];
+  for (double& alpha : points->alpha) alpha *= sense;
   const int y = batch.Find("y"), z = batch.Find("z"), bearing = batch.Find("bearing"), range = batch.Find("range");
   if (bearing >= 0 && range >= 0) {
-    points.range = batch.columns[range];
-    points.y.resize(batch.size());
-    points.z.resize(batch.size());
+    points->range = batch.columns[range];
+    points->y.resize(batch.size());
+    points->z.resize(batch.size());
     for (size_t i = 0; i < batch.size(); ++i) {
-      points.y[i] = points.range[i] * std::cos(batch.columns[bearing][i]);
-      points.z[i] = points.range[i] * std::sin(batch.columns[bearing][i]);
+      points->y[i] = points->range[i] * std::cos(batch.columns[bearing][i]);
+      points->z[i] = points->range[i] * std::sin(batch.columns[bearing][i]);
     }
   } else {  // the reader has made sure of them
-    points.y = batch.columns[y];
-    points.z = batch.columns[z];
+    points->y = batch.columns[y];
+    points->z = batch.columns[z];
   }
-  return points;
 }
 
-Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense) {
+Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense, const std::function<void(double)>& progress) {
   SCANCAL_ASSIGN_OR_RETURN(const auto reader, ScanReader::Open(scan.format));
-  Progress progress("reading " + scan.scan);
   Gatherer gatherer(scan.format.path);
   ScanBatch batch;
+  SensorColumns points;
   for (;;) {
     SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
     if (!more) break;
-    const SensorColumns points = ToSensor(sense, batch);
+    ToSensor(sense, batch, &points);
     SCANCAL_ASSIGN_OR_RETURN(const std::vector<char> kept, Kept(scan, batch, points));
     const int profile = batch.Find("profile");
     for (size_t i = 0; i < batch.size(); ++i) {
@@ -143,10 +144,10 @@ Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense) {
                                            points.y[i], points.z[i],
                                            points.range.empty() ? nullptr : &points.range[i]));
     }
-    progress.Show(static_cast<double>(reader->bytes_read()) /
-                  static_cast<double>(std::max<int64_t>(1, reader->bytes_total())));
+    progress(static_cast<double>(reader->bytes_read()) /
+             static_cast<double>(std::max<int64_t>(1, reader->bytes_total())));
   }
-  RawScan result{scan.name, gatherer.Take(), static_cast<double>(reader->missing()), 0, {}};
+  RawScan result{scan.name, gatherer.Take(), {}, static_cast<double>(reader->missing()), 0, {}};
   if (result.profiles.empty())
     return Error{scan.format.path.string() + ": target " + scan.name + ": no point is left; widen its keep: intervals"};
   if (!gatherer.by_key() && LooksShuffled(result.profiles)) result.warning = Say(kLooksShuffled, scan.name);

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <numeric>
 #include "io/output_file.h"
+#include "io/progress.h"
 #include "models/turntable/tables.h"
+#include "solver/parallel.h"
 
 namespace scancal::turntable {
 namespace {
@@ -24,9 +28,9 @@ System DeclaredOf(const Model& model) {
   return system;
 }
 
-bool SamePoints(const std::vector<Placement>& a, const std::vector<Placement>& b) {
+bool SamePoints(const std::vector<PointsOnPlane>& a, const std::vector<PointsOnPlane>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const Placement& x, const Placement& y) { return x.Points() == y.Points(); });
+                    [](const auto& x, const auto& y) { return x.off == y.off; });
 }
 
 GridBox BoxOf(const Declaration& declaration, const Model& model) {
@@ -55,6 +59,28 @@ std::array<double, 2> DepthsOf(const std::vector<RawScan>& scans) {
     for (const RawProfile& profile : scan.profiles)
       for (const double y : profile.y) depths = {std::min(depths[0], y), std::max(depths[1], y)};
   return depths;
+}
+
+// All of them, clean, some at a time.
+Result<std::vector<RawScan>> ReadScans(const Declaration& declaration) {
+  const size_t count = declaration.scans.size();
+  std::vector<std::optional<Result<RawScan>>> read(count);
+  Progress progress("reading");
+  std::mutex one_at_a_time;
+  std::vector<double> done(count);
+  InParallel(count, 0, [&](size_t k) {
+    read[k] = ReadScan(declaration.scans[k], declaration.sense, [&](double fraction) {
+      const std::lock_guard lock(one_at_a_time);
+      done[k] = fraction / static_cast<double>(count);
+      progress.Show(std::accumulate(done.begin(), done.end(), 0.0));
+    });
+    if (read[k]->ok()) Clean(&**read[k]);
+  });
+  std::vector<RawScan> scans;
+  for (auto& each : read) {
+    SCANCAL_ASSIGN_OR_RETURN(scans.emplace_back(), std::move(*each));
+  }
+  return scans;
 }
 
 }  // namespace
@@ -86,7 +112,7 @@ Result<Start> Scanner::FindStartIn(const GridBox& box) const {
   // that end in one place are no local minimum.
   double least = std::numeric_limits<double>::infinity();
   for (const System& from : {System(start.system), middle}) {
-    const JointFit fit = Fit(from, Model::Residuals::kDepth);
+    const JointFit fit = Fit(from, Model::Residuals::kDepth, {.influences = false});
     if (!(fit.solution.fit.cost < least) || !CheckDetermined(fit).ok()) continue;
     least = fit.solution.fit.cost;
     start.system = fit.Found();
@@ -109,8 +135,8 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   SCANCAL_RETURN_IF_ERROR(CheckMonteCarlo(choice, weighted));
   SCANCAL_ASSIGN_OR_RETURN(const Start start, FindStart());
   const Stopwatch watch;
-  JointFit fit =
-      Fit(start.system, plane ? Model::Residuals::kPlane : Model::Residuals::kDepth, {}, {}, choice.max_iterations);
+  JointFit fit = Fit(start.system, plane ? Model::Residuals::kPlane : Model::Residuals::kDepth,
+                     {.max_iterations = choice.max_iterations});
   SCANCAL_RETURN_IF_ERROR(CheckDetermined(fit));
   if (weighted) fit = FitWeighted(fit, choice.max_iterations);
   const double seconds = watch.Seconds();
@@ -131,7 +157,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   for (size_t t = 0; t < result.targets.size(); ++t) {
     TargetSummary& target = result.targets[t];
     const std::vector<double> values = Values(fit.solution.problem, fit.solution.fit.estimate, t);
-    target.residual_tables = ResidualTables({placements_[t], fit.targets[t], values, found});
+    if (choice.figures) target.residual_tables = ResidualTables({placements_[t], fit.targets[t], values, found});
     target.missing = placements_[t].missing;
     target.set_aside = placements_[t].set_aside;
     target.residuals = ResidualsOf(placements_[t]);
@@ -141,7 +167,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   if (plane) result.warnings.push_back(Say(kPlaneIsBiased));
   Judge(box, placements_, SearchKnowing(found, start), fit, &result);
   AddVolume(placements_, &result);
-  AddSurface(box, start.storeys, StoreysOf(placements_, found), &result);
+  if (choice.figures) AddSurface(box, start.storeys, StoreysOf(placements_, found), &result);
   AddScene(placements_, &result);
   return result;
 }
@@ -149,13 +175,9 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
 Result<std::unique_ptr<scancal::Scanner>> Load(const Dataset& dataset) {
   Model model(Model::Residuals::kDepth);
   SCANCAL_ASSIGN_OR_RETURN(Declaration declaration, Declare(dataset, &model));
-  std::vector<RawScan> scans;
-  for (const ScanDeclaration& scan : declaration.scans) {
-    SCANCAL_ASSIGN_OR_RETURN(RawScan raw, ReadScan(scan, declaration.sense));
-    Clean(&raw);
-    if (!raw.warning.empty()) declaration.warnings.push_back(raw.warning);
-    scans.push_back(std::move(raw));
-  }
+  SCANCAL_ASSIGN_OR_RETURN(const std::vector<RawScan> scans, ReadScans(declaration));
+  for (const RawScan& scan : scans)
+    if (!scan.warning.empty()) declaration.warnings.push_back(scan.warning);
   SCANCAL_ASSIGN_OR_RETURN(std::unique_ptr<Scanner> scanner, Compress(declaration, model, scans));
   return std::unique_ptr<scancal::Scanner>(std::move(scanner));
 }
@@ -164,21 +186,25 @@ Result<std::unique_ptr<scancal::Scanner>> Load(const Dataset& dataset) {
 // the middle of the search interval; a coarse search begins the same refinement as the declared one.
 Result<std::unique_ptr<Scanner>> Compress(const Declaration& declaration, const Model& model,
                                           const std::vector<RawScan>& scans) {
-  std::unique_ptr<Scanner> scanner;
   const GridBox box = BoxOf(declaration, model);
   System system = MiddleOf(box, DeclaredOf(model));
   system.depths = DepthsOf(scans);
+  std::vector<PointsOnPlane> points;
+  std::vector<Placement> placements;
   for (int round = 0; round < kRoundsOfReading; ++round) {
-    std::vector<Placement> placements;
-    for (const RawScan& scan : scans) placements.push_back(CompressPlacement(scan, system));
-    if (scanner && SamePoints(placements, scanner->placements())) break;
+    std::vector<PointsOnPlane> left(scans.size());
+    InParallel(scans.size(), 0, [&](size_t k) { left[k] = SetAsideOffPlane(scans[k], system); });
+    if (round > 0 && SamePoints(left, points)) break;
+    points = std::move(left);
+    placements.clear();
+    for (size_t k = 0; k < scans.size(); ++k) placements.push_back(MakePlacement(scans[k], points[k]));
     SCANCAL_RETURN_IF_ERROR(CheckPlausible(placements, declaration.dataset.units));
-    scanner = std::make_unique<Scanner>(declaration, model, std::move(placements));
-    const Result<Start> start = scanner->FindStartIn(Coarse(box));
+    const Result<Start> start = Scanner(declaration, model, placements).FindStartIn(Coarse(box));
     if (!start.ok()) break;  // Calibrate will say so
     system = start->system;
   }
-  return scanner;
+  for (size_t k = 0; k < scans.size(); ++k) LookAtResiduals(points[k], &placements[k]);
+  return std::make_unique<Scanner>(declaration, model, std::move(placements));
 }
 
 std::vector<std::filesystem::path> Scanner::Files() const {

@@ -29,6 +29,13 @@ struct JointFit {
   std::pair<Eigen::Vector3d, double> Plane(size_t target) const;
 };
 
+struct FitChoice {
+  std::vector<int> estimate = {};      // indices of further quantities to be estimated (Model::kTiltX)
+  std::optional<size_t> without = {};  // leaves that placement out
+  int max_iterations = 100;
+  bool influences = true;  // false: only the values count, so columns are left out of what none of them depends on
+};
+
 class Scanner final : public scancal::Scanner {
  public:
   // model: carries the roles of the quantities. For one thread.
@@ -45,10 +52,8 @@ class Scanner final : public scancal::Scanner {
   const Result<Start>& FindStart() const;
   // The same from a search over another box.
   Result<Start> FindStartIn(const GridBox& box) const;
-  // From planes fitted in closed form to the points as `system` sees them; estimate: indices of further quantities to
-  // be estimated (Model::kTiltX); without: leave that placement out.
-  JointFit Fit(const System& system, Model::Residuals residuals, const std::vector<int>& estimate = {},
-               std::optional<size_t> without = {}, int max_iterations = 100) const;
+  // From planes fitted in closed form to the points as `system` sees them.
+  JointFit Fit(const System& system, Model::Residuals residuals, const FitChoice& choice = {}) const;
   // The headline: from a depth fit with equal weights to its variances and generalised least squares.
   JointFit FitWeighted(const JointFit& plain, int max_iterations = 100) const;
   const std::vector<Placement>& placements() const { return placements_; }

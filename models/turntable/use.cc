@@ -198,11 +198,12 @@ Result<int64_t> Transform(const Dataset& dataset, const Calibration& calibration
     SCANCAL_ASSIGN_OR_RETURN(const auto reader, ScanReader::Open(scan.format));
     Progress progress("transforming " + scan.scan);
     ScanBatch batch;
+    SensorColumns sensor;
     std::vector<std::array<double, 3>> transformed;
     for (;;) {
       SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
       if (!more) break;
-      const SensorColumns sensor = ToSensor(declaration.sense, batch);
+      ToSensor(declaration.sense, batch, &sensor);
       transformed.clear();
       for (size_t i = 0; i < batch.size(); ++i) {
         const Eigen::Vector3d p = system.Point(sensor.alpha[i], sensor.y[i], sensor.z[i]);

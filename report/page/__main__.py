@@ -1,5 +1,6 @@
-"""calibration.json -> one page that is filed; started by `scancal report`. It reads that file and nothing else."""
+"""calibration.json -> one page that is filed; started by `scancal report`. It reads that file and standard input."""
 import argparse
+import json
 import sys
 import traceback
 from pathlib import Path
@@ -19,6 +20,9 @@ def arguments(given: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--out", type=Path, help="HTML page")
     parser.add_argument("--pdf", type=Path, help="the same page, printed on A4")
     parser.add_argument("--dcc", type=Path, help="Digital Calibration Certificate, XML")
+    parser.add_argument("--figures", action="store_true",
+                        help="standard input holds what the file leaves out for figures: {} or null if nothing")
+    parser.add_argument("--fonts", type=Path, help="file in which the page's fonts are kept from run to run")
     parser.add_argument("--previous", type=Path, help="an earlier calibration.json: as found, as left")
     parser.add_argument("--language", choices=LANGUAGES, default="en")
     return parser.parse_args(given)
@@ -30,13 +34,15 @@ def main(given: list[str] | None = None) -> int:
     try:
         check_outputs([choice.out, choice.pdf, choice.dcc], [choice.calibration, choice.previous])
         calibration = read_calibration(choice.calibration)
+        if choice.figures:
+            calibration.add_figures(json.load(sys.stdin))
         previous = read_calibration(choice.previous) if choice.previous else None
         for each in filter(None, [calibration, previous]):
             consistency.check(each)
         language = Language(choice.language, calibration, previous)
         if choice.out or choice.pdf:
             from page import render_page  # Matplotlib takes half a second, and a certificate needs none
-            html = render_page(calibration, previous, language)
+            html = render_page(calibration, previous, language, choice.fonts)
             if choice.out:
                 write_whole(choice.out, html.encode())
             if choice.pdf:

@@ -42,6 +42,12 @@ class Calibration(dict):
     file: Path
     sha256: str = ""  # of the file
 
+    def add_figures(self, figures: dict | None) -> None:
+        """What `scancal report` computes again because the file leaves it out; files of older versions hold it."""
+        figures = dict(figures or {})
+        self["messages"] = (self.get("messages") or []) + figures.pop("messages", [])
+        self.update(figures)
+
     @property
     def is_reliable(self) -> bool:
         return self["status"] == "ok"

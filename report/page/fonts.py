@@ -1,10 +1,13 @@
 """The type of the report. It travels inside the page: figures are laid out with its metrics, so they need it."""
 import base64
+import contextlib
 import functools
+import hashlib
 import io
 from pathlib import Path
 
 from calibration import Complaint
+from output import write_whole
 
 FOLDER = Path("/usr/share/fonts/opentype/inter")  # Debian's fonts-inter
 FONT_FILES = {400: FOLDER / "Inter-Regular.otf", 600: FOLDER / "Inter-SemiBold.otf"}
@@ -18,9 +21,27 @@ for _file in FONT_FILES.values():
         raise Complaint(f"{_file} is missing: install fonts-inter")
 
 
+def font_faces(kept: Path | None = None) -> str:
+    """CSS @font-face rules with the fonts inside, cut down to the letters above. Cutting takes a second: the rules are
+    read from the file `kept` if they are of these fonts, else written there, if that can be."""
+    if not kept:
+        return _cut()
+    of_these = hashlib.sha256(repr(_CHARACTERS).encode())
+    for file in FONT_FILES.values():
+        of_these.update(file.read_bytes())
+    first_line = f"/* {of_these.hexdigest()} */\n"
+    with contextlib.suppress(OSError, UnicodeDecodeError):
+        found = kept.read_text(encoding="utf-8")
+        if found.startswith(first_line):
+            return found.removeprefix(first_line)
+    rules = _cut()
+    with contextlib.suppress(Complaint):
+        write_whole(kept, (first_line + rules).encode())
+    return rules
+
+
 @functools.cache
-def font_faces() -> str:
-    """CSS @font-face rules with the fonts inside, cut down to the letters above."""
+def _cut() -> str:
     from fontTools import subset, ttLib
     rules = []
     for weight, file in FONT_FILES.items():

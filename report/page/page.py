@@ -44,15 +44,17 @@ class Figures:
         return Markup(f'<figure id="figure-{name}">{svg}<figcaption><b>{number}</b> {caption}</figcaption></figure>')
 
 
-def render_page(calibration: Calibration, previous: Calibration | None, language: Language) -> str:
-    """The whole HTML page: nothing in it is loaded from elsewhere, and the same input gives the same bytes."""
+def render_page(calibration: Calibration, previous: Calibration | None, language: Language,
+                fonts: Path | None = None) -> str:
+    """The whole HTML page: nothing in it is loaded from elsewhere, and the same input gives the same bytes. fonts: the
+    file in which their rules are kept."""
     environment = environment_of(calibration, previous, language)
     rendered = [(name, render_section(name, environment))
                 for name in SECTIONS if (TEMPLATES / "sections" / f"{name}.html").exists()]
     html = environment.get_template("page.html").render(
         sections=[(name, Markup(body)) for name, body in rendered if body],
         **sections.content("head", calibration, previous, language),
-        fonts=Markup(font_faces()), css=Markup((TEMPLATES / "page.css").read_text(encoding="utf-8")))
+        fonts=Markup(font_faces(fonts)), css=Markup((TEMPLATES / "page.css").read_text(encoding="utf-8")))
     if sys.stderr.isatty():
         print("\r\033[K", end="", file=sys.stderr, flush=True)
     return html

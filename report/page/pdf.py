@@ -37,9 +37,11 @@ def print_page(html: str, file: Path) -> None:
     logging.getLogger("weasyprint").setLevel(logging.ERROR)  # it warns of every property that is the screen's
     os.environ["SOURCE_DATE_EPOCH"] = "0"  # the embedded fonts carry a date
     document = weasyprint.HTML(string=_for_weasyprint(html), base_url="", url_fetcher=_only_inside)
-    write_whole(file, document.write_pdf(stylesheets=[weasyprint.CSS(string=_foot(html))], variant="pdf/a-2b",
-                                         identifier=hashlib.sha256(html.encode()).hexdigest()[:32].encode(),
-                                         finisher=_without_interpolation))
+    archived = {"variant": "pdf/a-2b", "identifier": hashlib.sha256(html.encode()).hexdigest()[:32].encode()}
+    if "pdf_variant" in getattr(weasyprint, "DEFAULT_OPTIONS", {}):  # since WeasyPrint 59, which passes over others
+        archived = {f"pdf_{key}": value for key, value in archived.items()}
+    write_whole(file, document.write_pdf(stylesheets=[weasyprint.CSS(string=_foot(html))],
+                                         finisher=_without_interpolation, **archived))
 
 
 def _foot(html: str) -> str:

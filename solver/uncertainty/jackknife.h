@@ -14,8 +14,10 @@ struct Jackknife {
 };
 
 // Each target left out in turn, the rest fitted anew: (m - 1)/m sum (x_i - mean)(x_i - mean)' (Tukey 1958; Efron and
-// Tibshirani, An Introduction to the Bootstrap, 1993, eq. (11.5)).
-Jackknife LeaveOneTargetOut(const Problem& problem, const Fit& fit);
+// Tibshirani, An Introduction to the Bootstrap, 1993, eq. (11.5)). Where the residuals are linear enough over the move,
+// so that it is right to a hundredth of u, one Gauss-Newton step on the merged triangles of the others is the fit.
+// linear: of the views, at the fit.
+Jackknife LeaveOneTargetOut(const Problem& problem, const Fit& fit, const Linearization& linear);
 
 // What the variances of the jackknife would be on average if views were independent, as the clustered covariance
 // supposes. Not that covariance itself: few targets, each needed by the others, scatter more. To first order, leaving

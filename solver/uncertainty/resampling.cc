@@ -1,8 +1,9 @@
 #include "solver/uncertainty/resampling.h"
 #include <glog/logging.h>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include "solver/dense.h"
+#include "solver/parallel.h"
 #include "solver/random.h"
 #include "solver/uncertainty/monte_carlo.h"
 
@@ -21,10 +22,6 @@ constexpr Message<std::string_view, Sentence> kIntervalsDiffer{
 constexpr Message<> kFirstDigit{"solver.first_digit", "first", "ersten"};
 constexpr Message<> kSecondDigit{"solver.second_digit", "second", "zweiten"};
 
-bool IsRegular(const Eigen::Ref<const Eigen::MatrixXd>& triangle) {
-  return (triangle.diagonal().array().abs() > kRankTolerance * triangle.colwise().norm().transpose().array()).all();
-}
-
 // How often each view is drawn; priors count once.
 std::vector<double> Multiplicities(const std::vector<Block>& views, Random* random) {
   std::vector<size_t> data;
@@ -37,16 +34,29 @@ std::vector<double> Multiplicities(const std::vector<Block>& views, Random* rand
   return times;
 }
 
-// Rows (system, r) with the norms of the target's weighted ones after its own quantities are eliminated; empty if they
-// are not determined. `rows` are (Q, system_left, r): Q spans what the target's own Jacobian does.
-Eigen::MatrixXd Eliminated(const Eigen::MatrixXd& rows, const std::vector<Eigen::Index>& first,
-                           const std::vector<double>& times, Eigen::Index own) {
-  TriangularFactor factor(static_cast<int>(rows.cols()));
-  for (size_t v = 0; v < times.size(); ++v)
-    if (times[v] > 0) factor.Add(std::sqrt(times[v]) * rows.middleRows(first[v], first[v + 1] - first[v]));
-  const Eigen::MatrixXd& r = factor.R();
-  const Eigen::Index left = rows.cols() - own;
-  return IsRegular(r.topLeftCorner(own, own)) ? Eigen::MatrixXd(r.bottomRightCorner(left, left)) : Eigen::MatrixXd();
+// Products of a view's rows (Q, system basis, r) with themselves, packed. Q spans what the target's own Jacobian does,
+// and both are orthonormal over all views: where each is drawn once, the sum of the products is the identity. So little
+// is lost by products, and a replicate is a sum.
+Eigen::VectorXd PackedProducts(const Eigen::Ref<const Eigen::MatrixXd>& rows) {
+  Eigen::VectorXd packed(rows.cols() * (rows.cols() + 1) / 2);
+  Eigen::Index at = 0;
+  for (Eigen::Index i = 0; i < rows.cols(); ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) packed[at++] = rows.col(i).dot(rows.col(j));
+  return packed;
+}
+
+Eigen::MatrixXd Unpacked(const Eigen::VectorXd& packed, Eigen::Index columns) {
+  Eigen::MatrixXd products(columns, columns);
+  Eigen::Index at = 0;
+  for (Eigen::Index i = 0; i < columns; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) products(i, j) = products(j, i) = packed[at++];
+  return products;
+}
+
+// Of what should be near the identity: no direction is nearly lost.
+bool IsRegular(const Eigen::LLT<Eigen::MatrixXd>& products) {
+  constexpr double kLost = 1e-5;
+  return products.info() == Eigen::Success && (products.matrixLLT().diagonal().array() > kLost).all();
 }
 
 constexpr int kReplicates = 500;  // a standard deviation to 3 %
@@ -150,34 +160,45 @@ void AddMonteCarlo(const Solution& solution, const VarianceDof& variance_dof, co
 
 Bootstrap ResampleViews(const Problem& problem, const Linearization& linear, int replicates, uint64_t seed) {
   const Eigen::Index n = linear.factor.cols();
-  std::vector<Eigen::MatrixXd> rows;
+  if (n == 0) return {};
+  const Eigen::MatrixXd to_basis = linear.factor.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
+  std::vector<std::vector<Eigen::VectorXd>> products;  // per target and view
   for (const LinearTarget& target : linear.targets) {
-    Eigen::MatrixXd& all = rows.emplace_back(target.r.size(), target.q.cols() + n + 1);
-    if (all.size()) all << target.q, target.system_left, target.r;
+    Eigen::MatrixXd all(target.r.size(), target.q.cols() + n + 1);
+    if (all.size()) all << target.q, target.system_left * to_basis, target.r;
+    auto& of_views = products.emplace_back();
+    for (size_t v = 0; v + 1 < target.first.size(); ++v)
+      of_views.push_back(PackedProducts(all.middleRows(target.first[v], target.first[v + 1] - target.first[v])));
   }
-  Eigen::MatrixXd estimates(replicates, n);
-  Bootstrap result;
-  for (int replicate = 0; replicate < replicates; ++replicate) {
-    Random random(seed, static_cast<uint64_t>(replicate));
-    TriangularFactor factor(static_cast<int>(n) + 1);
-    factor.Add(rows.back());  // the system's priors
-    bool determined = true;
-    for (size_t t = 0; t < problem.targets.size() && determined; ++t) {
-      const LinearTarget& target = linear.targets[t];
+  Eigen::MatrixXd priors = Eigen::MatrixXd::Zero(n + 1, n + 1);  // the system's
+  for (const Eigen::VectorXd& prior : products.back()) priors += Unpacked(prior, n + 1);
+
+  std::vector<Eigen::VectorXd> moves(static_cast<size_t>(replicates));  // empty: not determined
+  InParallel(moves.size(), 0, [&](size_t replicate) {
+    Random random(seed, replicate);
+    Eigen::MatrixXd left = priors;  // of (system, r), after each target's own quantities are eliminated
+    for (size_t t = 0; t < problem.targets.size(); ++t) {
+      const Eigen::Index own = linear.targets[t].q.cols();
       const std::vector<double> times = Multiplicities(problem.targets[t].views, &random);
-      const Eigen::MatrixXd left = Eliminated(rows[t], target.first, times, target.q.cols());
-      determined = left.size() > 0;
-      factor.Add(left);
+      Eigen::VectorXd sum = Eigen::VectorXd::Zero((own + n + 1) * (own + n + 2) / 2);
+      for (size_t v = 0; v < times.size(); ++v)
+        if (times[v] > 0) sum += times[v] * products[t][v];
+      const Eigen::MatrixXd drawn = Unpacked(sum, own + n + 1);
+      left += drawn.bottomRightCorner(n + 1, n + 1);
+      if (own == 0) continue;
+      const Eigen::LLT<Eigen::MatrixXd> of_own(drawn.topLeftCorner(own, own));
+      if (!IsRegular(of_own)) return;
+      left -= drawn.bottomLeftCorner(n + 1, own) * of_own.solve(drawn.topRightCorner(own, n + 1));
     }
-    if (!determined || !IsRegular(factor.R().topLeftCorner(n, n))) continue;
-    estimates.row(result.replicates++) = -factor.R()
-                                              .topLeftCorner(n, n)
-                                              .triangularView<Eigen::Upper>()
-                                              .solve(factor.R().topRightCorner(n, 1))
-                                              .transpose();
-  }
+    const Eigen::LLT<Eigen::MatrixXd> of_system(left.topLeftCorner(n, n));
+    if (IsRegular(of_system)) moves[replicate] = -to_basis * of_system.solve(left.topRightCorner(n, 1));
+  });
+  std::erase_if(moves, [](const Eigen::VectorXd& move) { return move.size() == 0; });
+  Bootstrap result;
+  result.replicates = static_cast<int>(moves.size());
   if (result.replicates < 2) return result;
-  const Eigen::MatrixXd used = estimates.topRows(result.replicates);
+  Eigen::MatrixXd used(result.replicates, n);
+  for (Eigen::Index k = 0; k < used.rows(); ++k) used.row(k) = moves[static_cast<size_t>(k)].transpose();
   const Eigen::MatrixXd centred = used.rowwise() - used.colwise().mean();
   result.covariance = centred.transpose() * centred / static_cast<double>(result.replicates - 1);
   return result;

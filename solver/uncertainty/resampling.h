@@ -17,10 +17,11 @@ struct Bootstrap {
 //
 //     sum over views of m_v |r_v + J_v x|^2 + |priors|^2,   m_v: how often view v was drawn,
 //
-// is solved by QR of rows times sqrt(m_v). Priors are kept, once each; what they may themselves be wrong by is not in
-// it. Right for any errors that are independent from view to view, as the clustered covariance is; with n views a
-// target it is too small by about the part p / n that the quantities take, and it scatters by 1 / sqrt(2 replicates).
-// Replicate k draws from stream k of the seed. linear: of the views, at the fit.
+// is solved by Cholesky of the views' products in a basis in which those of all are the identity. Priors are kept, once
+// each; what they may themselves be wrong by is not in it. Right for any errors that are independent from view to view,
+// as the clustered covariance is; with n views a target it is too small by about the part p / n that the quantities
+// take, and it scatters by 1 / sqrt(2 replicates). Replicate k draws from stream k of the seed. linear: of the views,
+// at the fit.
 Bootstrap ResampleViews(const Problem& problem, const Linearization& linear, int replicates, uint64_t seed);
 
 struct MonteCarloChoice {

@@ -1,4 +1,4 @@
-// scancal compare: nine rows, and the surface of the published search.
+// scancal compare: one row a method, and the surface of the published search.
 #include <gmock/gmock.h>
 #include <limits>
 #include "tests/cli/data_set.h"
@@ -9,6 +9,8 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
+
+constexpr char kFine[] = "--steps=1,0.1,0.01";
 
 class CompareTest : public CliTest {
  protected:
@@ -37,8 +39,8 @@ class CompareTest : public CliTest {
   }
 };
 
-TEST_F(CompareTest, TenRowsInTheirOrder) {
-  const Outcome outcome = RunScancal({"compare", SmallSearch().string()});
+TEST_F(CompareTest, RowsInTheirOrder) {
+  const Outcome outcome = RunScancal({"compare", SmallSearch().string(), kFine});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   const std::vector<std::string> rows = Rows(outcome.out);
@@ -64,7 +66,7 @@ TEST_F(CompareTest, TenRowsInTheirOrder) {
 }
 
 TEST_F(CompareTest, AFinerGridComesNearerToTheJointFit) {
-  const Outcome outcome = RunScancal({"compare", SmallSearch().string()});
+  const Outcome outcome = RunScancal({"compare", SmallSearch().string(), kFine});
   const std::vector<std::string> rows = Rows(outcome.out);
   ASSERT_EQ(rows.size(), 10U);
   const auto depth = Numbers(rows[7], "joint, depth"), plane = Numbers(rows[6], "joint, point to plane"),
@@ -82,7 +84,15 @@ TEST_F(CompareTest, OnePlacementHasNoHeldOutResidual) {
   const Outcome outcome = RunScancal({"compare", Path("data").string()});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   for (const std::string& row : Rows(outcome.out)) EXPECT_THAT(row, HasSubstr(" - ")) << row;
-  EXPECT_EQ(Rows(outcome.out).size(), 10U);
+  EXPECT_EQ(Rows(outcome.out).size(), 8U);
+}
+
+TEST_F(CompareTest, StepsThatAreNoneAreRefused) {
+  for (const char* steps : {"", "1,", "0", "-0.1", "1;0.1", "fine", "nan"}) {
+    const Outcome outcome = RunScancal({"compare", "data", std::string("--steps=") + steps});
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(OneSentence(outcome), AllOf(HasSubstr("--steps"), HasSubstr("as 1,0.1"))) << steps;
+  }
 }
 
 TEST_F(CompareTest, TheSurfaceHasEveryNodeAndItsMinimumWhereItIsReported) {

@@ -59,8 +59,8 @@ TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
   EXPECT_THAT(HelpFlags("refine"),
               ElementsAre("out", "report", "language", "residual", "weights", "max_iterations", "montecarlo"));
   EXPECT_THAT(HelpFlags("montecarlo"), ElementsAre("out", "report", "language", "trials", "seed", "digits", "threads"));
-  EXPECT_THAT(HelpFlags("report"), ElementsAre("out", "pdf", "dcc", "previous", "language"));
-  EXPECT_THAT(HelpFlags("compare"), ElementsAre("surface"));
+  EXPECT_THAT(HelpFlags("report"), ElementsAre("out", "pdf", "dcc", "figures", "previous", "language"));
+  EXPECT_THAT(HelpFlags("compare"), ElementsAre("steps", "surface"));
   EXPECT_THAT(HelpFlags("selftest"), ElementsAre("nist"));
   EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out"));
   EXPECT_THAT(HelpFlags("propagate"), UnorderedElementsAre("point", "points_file", "units", "distance", "out"));

@@ -66,6 +66,33 @@ TEST_F(ReportTest, RefusesWrongArguments) {
   EXPECT_THAT(OneSentence(Refine(MakeData(), {"--report", "--language=fr"})), HasSubstr("\"fr\""));
 }
 
+TEST_F(ReportTest, TheNumbersOfTheFigures) {
+  Refined(MakeData());
+  const fs::path calibration = Path("out") / "calibration.json", file = Path("numbers.json");
+  const std::string before = ReadWhole(calibration);
+  const Outcome itself = RunScancal({"report", calibration.string(), "--figures=" + calibration.string()});
+  EXPECT_EQ(itself.exit_code, 1);
+  EXPECT_THAT(OneSentence(itself), HasSubstr("is the calibration itself"));
+  EXPECT_EQ(ReadWhole(calibration), before);
+
+  const Outcome outcome = RunScancal({"report", calibration.string(), "--figures=" + file.string()});
+  EXPECT_EQ(outcome.exit_code, 0) << ::testing::PrintToString(outcome);
+  EXPECT_EQ(outcome.out, file.string() + "\n");
+  EXPECT_FALSE(fs::exists(Path("out") / "report.html"));
+  Json older = *ReadJson(calibration);  // older versions kept them in the file
+  const Json numbers = *ReadJson(file);
+  for (const auto& [key, value] : numbers.items()) older[key] = value;
+  const fs::path old = Path("older") / "calibration.json", again = Path("again.json");
+  ASSERT_TRUE(WriteJson(old, older).ok());
+  EXPECT_EQ(RunScancal({"report", old.string(), "--figures=" + again.string()}).exit_code, 0);
+  EXPECT_EQ(ReadWhole(again), ReadWhole(file));
+  const fs::path page = Path("page.html"), older_page = Path("older.html");
+  EXPECT_EQ(RunScancal({"report", calibration.string(), "--out=" + page.string()}).exit_code, 0);
+  EXPECT_EQ(RunScancal({"report", old.string(), "--out=" + older_page.string()}).exit_code, 0);
+  EXPECT_THAT(ReadWhole(older_page), HasSubstr("id=\"surface\""));
+  EXPECT_EQ(ReadWhole(page).size(), ReadWhole(older_page).size());  // but for the file's own hash
+}
+
 TEST_F(ReportTest, AFullDiskLeavesTheOldPage) {
   Refined(MakeData());
   const fs::path page = Path("page.html");

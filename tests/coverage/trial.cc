@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 #include "models/turntable/scanner.h"
+#include "solver/parallel.h"
 #include "solver/uncertainty/gum.h"
-#include "tests/in_parallel.h"
 
 namespace scancal::coverage {
 

@@ -20,6 +20,13 @@ using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
+bool HasTerminal() {
+  int ends[2] = {};
+  if (::openpty(&ends[0], &ends[1], nullptr, nullptr, nullptr) != 0) return false;
+  for (const int end : ends) ::close(end);
+  return true;
+}
+
 // What `show` writes to standard error, which is a terminal of this width, or a pipe if the width is 0.
 std::string Output(unsigned short width, const std::function<void()>& show) {
   int ends[2] = {};
@@ -44,6 +51,7 @@ std::string Output(unsigned short width, const std::function<void()>& show) {
 }
 
 TEST(ProgressTest, DrawsLabelBarPercentAndTimeLeftAndWipesThem) {
+  if (!HasTerminal()) GTEST_SKIP() << "NO TERMINAL: /dev/pts is not there";
   const std::string output = Output(100, [] {
     Progress progress("reading left.csv");
     std::this_thread::sleep_for(milliseconds(400));
@@ -54,6 +62,7 @@ TEST(ProgressTest, DrawsLabelBarPercentAndTimeLeftAndWipesThem) {
 }
 
 TEST(ProgressTest, RedrawsAtMostTenTimesASecond) {
+  if (!HasTerminal()) GTEST_SKIP() << "NO TERMINAL: /dev/pts is not there";
   const std::string output = Output(100, [] {
     Progress progress("x");
     const auto end = std::chrono::steady_clock::now() + milliseconds(750);
@@ -65,6 +74,7 @@ TEST(ProgressTest, RedrawsAtMostTenTimesASecond) {
 }
 
 TEST(ProgressTest, WhatEndsSoonDrawsNothing) {
+  if (!HasTerminal()) GTEST_SKIP() << "NO TERMINAL: /dev/pts is not there";
   EXPECT_THAT(Output(100,
                      [] {
                        Progress progress("x");
@@ -74,7 +84,19 @@ TEST(ProgressTest, WhatEndsSoonDrawsNothing) {
               IsEmpty());
 }
 
-TEST(ProgressTest, NothingWhereStandardErrorIsNoTerminal) {
+TEST(ProgressTest, ALineNowAndThenWhereStandardErrorIsNoTerminal) {
+  const std::string output = Output(0, [] {
+    Progress progress("reading", milliseconds(200));
+    for (const double fraction : {0.25, 0.5}) {
+      std::this_thread::sleep_for(milliseconds(250));
+      progress.Show(fraction);
+      progress.Show(fraction);
+    }
+  });
+  EXPECT_EQ(output, "reading: 25 %, 1 s left\nreading: 50 %, 1 s left\n");
+}
+
+TEST(ProgressTest, NothingOfWhatEndsSoonWhereStandardErrorIsNoTerminal) {
   EXPECT_THAT(Output(0,
                      [] {
                        Progress progress("x");
@@ -85,6 +107,7 @@ TEST(ProgressTest, NothingWhereStandardErrorIsNoTerminal) {
 }
 
 TEST(ProgressTest, ALineIsNeverWiderThanTheTerminal) {
+  if (!HasTerminal()) GTEST_SKIP() << "NO TERMINAL: /dev/pts is not there";
   const std::string output = Output(20, [] {
     Progress progress("a label of thirty-odd characters");
     std::this_thread::sleep_for(milliseconds(400));

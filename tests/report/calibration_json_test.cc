@@ -149,13 +149,14 @@ TEST(CalibrationJsonTest, WhatIsSaidInOtherLanguages) {
   c.budget[0].source = {"three", "drei", "some.three"};
   Comparison comparison;
   comparison.rows = {{{"four", "vier", "some.four"}, {}, {"five", "fünf", "some.five"}}};
-  const Json json = ToJson(c, {.comparison = comparison});
+  const Json json = ToJson(c), figures = FiguresToJson(c, comparison);
   EXPECT_EQ(json["warnings"], Json({"one", "words of others", "one"}));
   EXPECT_EQ(json["unreliable"], Json::array({"two"}));
   EXPECT_EQ(json["budget"][0]["source"], "three");
-  EXPECT_EQ(json["compare"][0]["method"], "four");
-  EXPECT_EQ(json["compare"][0]["note"], "five");
-  EXPECT_EQ(json["messages"], Json::parse(R"([{"id": "some.two", "en": "two", "de": "zwei"},
+  EXPECT_EQ(figures["compare"][0]["method"], "four");
+  EXPECT_EQ(figures["compare"][0]["note"], "five");
+  EXPECT_EQ(json["messages"].size(), 3U);
+  EXPECT_EQ(figures["messages"], Json::parse(R"([{"id": "some.two", "en": "two", "de": "zwei"},
                                               {"id": "some.one", "en": "one", "de": "eins"},
                                               {"id": "some.three", "en": "three", "de": "drei"},
                                               {"id": "some.four", "en": "four", "de": "vier"},

@@ -80,7 +80,7 @@ TEST(FiguresJsonTest, AComparisonWithoutItsComputingTimes) {
                                  {{{"grid"}, {{123.0, 0}, {0.7, 0}, {std::nullopt, 0}}, {"minimum on the edge"}},
                                   {{"joint"}, {{123.4, 0.1}, {0.1, 0}, {INFINITY, 0}}, {}},
                                   {{"none"}, {}, {"left out"}}}};
-  EXPECT_EQ(ToJson(Calibration(), {.comparison = comparison})["compare"], Json::parse(R"([
+  EXPECT_EQ(FiguresToJson(Calibration(), comparison)["compare"], Json::parse(R"([
       {"method": "grid", "note": "minimum on the edge",
        "cells": [{"column": "M/mm", "value": 123.0, "u": null}, {"column": "S/um", "value": null, "u": null}]},
       {"method": "joint", "note": "",

@@ -6,8 +6,8 @@
 #include "models/robot_ball/published.h"
 #include "models/robot_ball/start.h"
 #include "models/sphere.h"
+#include "solver/parallel.h"
 #include "solver/random.h"
-#include "tests/in_parallel.h"
 
 namespace scancal::robot_study {
 namespace {

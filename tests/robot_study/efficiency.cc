@@ -6,9 +6,9 @@
 #include <numbers>
 #include "models/robot_ball/fit.h"
 #include "solver/calibrate.h"
+#include "solver/parallel.h"
 #include "solver/uncertainty/gum.h"
 #include "solver/weigh.h"
-#include "tests/in_parallel.h"
 
 namespace scancal::robot_study {
 namespace {

@@ -4,7 +4,7 @@
 #include "models/robot_ball/fit.h"
 #include "models/robot_ball/published.h"
 #include "models/robot_ball/start.h"
-#include "tests/in_parallel.h"
+#include "solver/parallel.h"
 #include "tests/robot_study/declared.h"
 
 namespace scancal::robot_study {

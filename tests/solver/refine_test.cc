@@ -129,9 +129,14 @@ TEST(Observability, NamesWhatHasNoEffectOfItsOwn) {
       Observe(determined, Linearize(determined, NominalStart(determined), Storey::kViews)).undetermined.empty());
 }
 
+Jackknife JackknifeOf(const Problem& problem) {
+  const Fit fit = Refine(problem, NominalStart(problem));
+  return LeaveOneTargetOut(problem, fit, Linearize(problem, fit.estimate, Storey::kViews));
+}
+
 TEST(Jackknife, IsTheSpreadOfTheFitsWithoutOneTarget) {
   const Problem problem = Pose({});
-  const Jackknife jackknife = LeaveOneTargetOut(problem, Refine(problem, NominalStart(problem)));
+  const Jackknife jackknife = JackknifeOf(problem);
   ASSERT_EQ(jackknife.estimates.rows(), 3);
   LineScene scene;
   auto targets = scene.Make();
@@ -147,7 +152,7 @@ TEST(Jackknife, NeedsTwoTargets) {
   LineScene scene;
   scene.targets = 1;
   const Problem problem = Pose(scene);
-  EXPECT_EQ(LeaveOneTargetOut(problem, Refine(problem, NominalStart(problem))).estimates.rows(), 0);
+  EXPECT_EQ(JackknifeOf(problem).estimates.rows(), 0);
 }
 
 }  // namespace

@@ -22,7 +22,6 @@ std::vector<Placement> Placements(bool lidar) {
     RawScan scan;
     scan.name = simulated.name;
     scan.missing = 3;
-    scan.off_line = 5;
     scan.warning = {"a warning \"with\" quotes", lidar ? "eine Warnung" : "", lidar ? "some.warning" : ""};
     for (const SimulatedProfile& profile : simulated.profiles) {
       RawProfile& raw = scan.profiles.emplace_back();
@@ -36,7 +35,11 @@ std::vector<Placement> Placements(bool lidar) {
     scan.profiles[2].y.resize(1);  // one point, one segment
     scan.profiles[2].z.resize(1);
     if (lidar) scan.profiles[2].range.resize(1);
-    placements.push_back(CompressPlacement(scan, scene.system));
+    Clean(&scan);
+    scan.off_line = 5;
+    const PointsOnPlane points = SetAsideOffPlane(scan, scene.system);
+    placements.push_back(MakePlacement(scan, points));
+    LookAtResiduals(points, &placements.back());
   }
   return placements;
 }

@@ -120,8 +120,9 @@ TEST(TurntableFigures, ABriefComparisonLeavesOutWhatTakesLong) {
   std::vector<Placement> many;
   for (int copy = 0; copy < 16; ++copy)
     for (Placement& placement : Scanned(30).placements) many.push_back(placement);
-  const Result<Comparison> few = ScannerOf(Scanned(30).placements).Compare({.brief = true}),
-                           all = ScannerOf(many).Compare({.brief = true});
+  const std::vector<double> kSteps = {1, 0.1, 0.01};
+  const Result<Comparison> few = ScannerOf(Scanned(30).placements).Compare({.steps = kSteps, .brief = true}),
+                           all = ScannerOf(many).Compare({.steps = kSteps, .brief = true});
   ASSERT_TRUE(few.ok() && all.ok());
   constexpr size_t kHeldOut = 6;
   ASSERT_EQ(few->columns[kHeldOut].name, "held out/um");

@@ -30,7 +30,7 @@ Study Repeat(Scene scene, Model::Residuals residuals, int trials) {
     study.scatter += error.cwiseAbs2() / trials;
     study.naive += NaiveCovariance(problem, solution.linear).matrix.diagonal() / trials;
     study.clustered += ClusteredCovariance(problem, solution.linear).matrix.diagonal() / trials;
-    study.jackknife += LeaveOneTargetOut(problem, solution.fit).covariance.diagonal() / trials;
+    study.jackknife += LeaveOneTargetOut(problem, solution.fit, solution.linear).covariance.diagonal() / trials;
     study.expected_jackknife +=
         ExpectLeaveOneTargetOut(problem, solution.fit.estimate, solution.linear).variance / trials;
     PureError pure;
@@ -194,6 +194,32 @@ TEST(Turntable, NodesGiveTheSameCostAsAllProfiles) {
   EXPECT_NEAR(nodes.cost, views.cost, 1e-11 * views.cost);
   EXPECT_LT((InverseInformation(nodes) - InverseInformation(views)).norm(), 1e-9 * InverseInformation(views).norm());
   EXPECT_FALSE(MakeProblemOf(scene, {}, Model(Model::Residuals::kDepth)).NodesSuffice());
+}
+
+// Little noise: one step on the triangles; much of it: the fit is repeated.
+TEST(TurntableUncertainty, WithoutAPlacementAsTheFullFitSays) {
+  for (const double noise : {0.05, 5.0}) {
+    Scene scene = LongScene();
+    scene.noise_y = noise;
+    const Model::Residuals depth = Model::Residuals::kDepth;
+    Problem problem = MakeProblemOf(scene, {depth, true, false, 0}, Model(depth));
+    problem.WeighEqually(noise);
+    const Solution solution = Solve(problem, StartNear(problem, scene.system));
+    const Jackknife jackknife = LeaveOneTargetOut(problem, solution.fit, solution.linear);
+    ASSERT_EQ(jackknife.estimates.rows(), 3);
+    EXPECT_TRUE(jackknife.converged);
+    for (std::ptrdiff_t t = 0; t < 3; ++t) {
+      Problem rest = problem;
+      Estimate start = solution.fit.estimate;
+      rest.targets.erase(rest.targets.begin() + t);
+      start.targets.erase(start.targets.begin() + t);
+      const Fit without = Refine(rest, start);
+      for (Eigen::Index k = 0; k < 2; ++k)
+        EXPECT_NEAR(jackknife.estimates(t, k), without.estimate.system[k],
+                    0.01 * std::sqrt(solution.naive.matrix(k, k)))
+            << noise;
+    }
+  }
 }
 
 }  // namespace

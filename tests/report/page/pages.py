@@ -38,7 +38,7 @@ _shared = Path(os.environ.get("SCANCAL_PAGES", _folder.name))
 
 @functools.cache
 def calibration(scene: str) -> Path:
-    """calibration.json of a scene; on "bad" nobody should rely: its U is larger than the searched box."""
+    """calibration.json of a scene with its figures; on "bad" nobody should rely: its U is larger than the box."""
     out = _shared / scene
     if (out / "calibration.json").exists():
         return out / "calibration.json"
@@ -58,6 +58,8 @@ def calibration(scene: str) -> Path:
         _rename(calibration("sample"), out)
     elif scene == "named_robot":
         _rename(calibration("robot"), out)
+    if not scene.startswith("named"):
+        _add_figures(out / "calibration.json")
     return out / "calibration.json"
 
 
@@ -121,6 +123,15 @@ def _simulated(out: Path, *arguments: str, influences: str = "", allowed: int = 
         with open(out / "data" / "dataset.yaml", "a", encoding="utf-8") as declared:
             declared.write(f"influences: {influences}\n")
     _run("refine", out / "data", f"--out={out}", allowed=allowed)
+
+
+def _add_figures(file: Path) -> None:
+    """As files of older versions hold them; the tests of the program see the page of a file without them."""
+    figures = file.with_name("figures.json")
+    _run("report", file, f"--figures={figures}")
+    found, added = json.loads(file.read_text(encoding="utf-8")), json.loads(figures.read_text(encoding="utf-8"))
+    found["messages"] += added.pop("messages")
+    file.write_text(json.dumps(found | added), encoding="utf-8")
 
 
 def _panda(out: Path) -> Path:

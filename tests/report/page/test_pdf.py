@@ -6,10 +6,23 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 from pathlib import Path
 
 import pages
 from printed import Printed
+
+
+def _without_compression(file: Path) -> bytes:
+    """What it says and what it draws, whichever way a version of WeasyPrint packs them."""
+    content = file.read_bytes()
+    parts = [content]
+    for stream in re.findall(rb">>\s*stream\r?\n(.*?)\r?\nendstream", content, re.S):
+        try:
+            parts.append(zlib.decompress(stream))
+        except zlib.error:
+            continue  # not packed
+    return b"\n".join(parts)
 
 
 class PdfTest(unittest.TestCase):
@@ -29,17 +42,15 @@ class PdfTest(unittest.TestCase):
 
     def test_is_for_the_archive(self):
         file = pages.pdf("sample")
-        content = file.read_bytes()
-        self.assertIn(b'pdfaid:part="2" pdfaid:conformance="B"', content)
-        self.assertIn(b"/GTS_PDFA1", content)
-        self.assertRegex(content, rb"trailer[^>]*/ID \[")
-        self.assertIn(b"/Lang (en)", content)
+        content = _without_compression(file)
+        for expected in (rb'pdfaid:part="2" pdfaid:conformance="B"', rb"/GTS_PDFA1", rb"/ID \[", rb"/Lang \(en\)",
+                         rb"/Interpolate false"):  # there is an image, and it is not smoothed
+            self.assertTrue(re.search(expected, content), expected)
+        self.assertFalse(b"/Interpolate true" in content)
         self.assertIn("simulated plate, 3 placements, seed 1",
                       subprocess.run(["pdfinfo", file], capture_output=True, text=True, check=True).stdout)
-        self.assertIn(b"/Interpolate false", content)  # there is an image, and it is not smoothed
-        self.assertNotIn(b"/Interpolate true", content)
         fonts = subprocess.run(["pdffonts", file], capture_output=True, text=True, check=True).stdout.splitlines()[2:]
-        self.assertRegex(str(fonts), r"\+Inter ")
+        self.assertRegex(str(fonts), r"\+Inter[- ]")
         for font in fonts:
             self.assertRegex(font, r" yes yes yes ")  # embedded, a part, with its letters
 
