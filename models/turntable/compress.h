@@ -55,15 +55,28 @@ std::vector<double> ResidualsFromLine(const Profile& profile, std::span<const do
 
 struct RawScan {
   std::string name;                  // of the target
-  std::vector<RawProfile> profiles;  // in the order of their keys
-  std::vector<Profile> compressed;   // each of them, after Clean
+  std::vector<RawProfile> profiles;  // in the order of their keys; of a large scan only those that Clean is to see next
+  std::vector<Profile> compressed;   // after Clean
   double missing = 0;                // no return
   double off_line = 0;               // removed by Clean: off the line of their profile
   Sentence warning;                  // empty: none
+  // False of a large scan: its points are gone as soon as their profile is compressed. Then Clean is called for some
+  // profiles after the others, and adds what is told from points.
+  bool holds_points = true;
+  std::optional<double> common_scale;  // of the first profiles that were cleaned
+  struct Seen {
+    std::array<double, 2> depths = {std::numeric_limits<double>::infinity(),
+                                    -std::numeric_limits<double>::infinity()};  // from, to
+    double largest = 0;                                                         // |coordinate|
+    LagSums lag_sums;
+    ResidualHistogram histogram;
+  } seen;
 };
 
-// Reads the points that `keep` keeps. With a column `profile` its values group the points, in any order; without it a
-// change of the angle starts a profile. progress: told the finished fraction.
+// Reads the points that `keep` keeps, and cleans them. With a column `profile` its values group the points, in any
+// order; without it a change of the angle starts a profile. Of more than kHeldPoints points of a profiler whose
+// profiles come one after the other none is kept. progress: told the finished fraction.
+inline constexpr size_t kHeldPoints = 1'000'000;
 Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense, const std::function<void(double)>& progress);
 
 // One batch of a scan as points of the sensor: columns angle (rad, by the sense), y, z, and range for a lidar.
@@ -104,7 +117,8 @@ struct Placement {
   bool IsLidar() const { return !profiles.empty() && profiles.front().ranged.has_value(); }
 };
 
-PureError PureOf(const std::vector<Placement>& placements);  // of all of them
+PureError PureOf(const std::vector<Profile>& profiles);  // of all of them
+PureError PureOf(const std::vector<Placement>& placements);
 
 // The readings over which scans extend.
 struct ScannedVolume {
@@ -121,16 +135,17 @@ ScannedVolume VolumeOf(const std::vector<Placement>& placements);
 // Orders the points of each profile along z, removes what is off its own line, and compresses the rest.
 void Clean(RawScan* scan);
 
-// What is left of a clean scan without what is off the plane of most profiles, as `system` sees it.
+// What is left of a clean scan without what is off the plane of most profiles, as `system` sees it: point by point, or
+// where these are gone by segments.
 struct PointsOnPlane {
   double off = 0;                           // points removed
-  std::vector<const RawProfile*> profiles;  // of the scan, or of `changed`
+  std::vector<const RawProfile*> profiles;  // of the scan, or of `changed`; none where the points are gone
   std::vector<Profile> compressed;          // each of them
   std::deque<RawProfile> changed;           // profiles that have lost points
 };
 PointsOnPlane SetAsideOffPlane(const RawScan& scan, const System& system);
 Placement MakePlacement(const RawScan& scan, const PointsOnPlane& points);  // without lag_sums and histogram
-void LookAtResiduals(const PointsOnPlane& points, Placement* placement);    // adds them
+void LookAtResiduals(const RawScan& scan, const PointsOnPlane& points, Placement* placement);  // adds them
 
 // {"layout": what follows in plain words, "targets": [...], "sha256": of the text of segments, "segments": base64 of
 // little-endian float64}: what a result is recomputed from, years later and without the points. Every digit is kept:

@@ -4,7 +4,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include "io/units.h"
 #include "models/line/robust_line.h"
@@ -53,38 +55,72 @@ double CountOf(const std::vector<bool>& points) {
   return static_cast<double>(std::count(points.begin(), points.end(), true));
 }
 
-// Removes the points off each profile's own line. A profile's scale is never taken smaller than the placement's median,
-// nor than the steps in which the sensor measures.
-double SetAsideOffLine(std::vector<RawProfile>* profiles) {
-  std::vector<RobustLine> lines(profiles->size());
-  std::vector<double> resolution(profiles->size());
-  InParallel(profiles->size(), 0, [&](size_t k) {
-    const RawProfile& profile = (*profiles)[k];
-    lines[k] = FitRobustLine(profile.y, profile.z);
+struct OwnLine {
+  RobustLine line;
+  double resolution = 0;  // of its points
+};
+
+std::vector<OwnLine> OwnLines(const std::vector<RawProfile>& profiles) {
+  std::vector<OwnLine> lines(profiles.size());
+  InParallel(profiles.size(), 0, [&](size_t k) {
+    const RawProfile& profile = profiles[k];
+    lines[k].line = FitRobustLine(profile.y, profile.z);
     if (profile.y.size() >= kFewestPoints)
-      resolution[k] = Resolution(profile.range.empty() ? profile.y : profile.range);
+      lines[k].resolution = Resolution(profile.range.empty() ? profile.y : profile.range);
   });
+  return lines;
+}
+
+// The least scale that a profile is taken to have: the placement's median, or the steps in which the sensor measures.
+double CommonScale(const std::vector<RawProfile>& profiles, const std::vector<OwnLine>& lines) {
   std::vector<double> scales, resolutions;
-  for (size_t k = 0; k < profiles->size(); ++k) {
-    if ((*profiles)[k].y.size() < kFewestPoints) continue;
-    scales.push_back(lines[k].scale);
-    resolutions.push_back(resolution[k]);
+  for (size_t k = 0; k < profiles.size(); ++k) {
+    if (profiles[k].y.size() < kFewestPoints) continue;
+    scales.push_back(lines[k].line.scale);
+    resolutions.push_back(lines[k].resolution);
   }
-  const double common = std::max(Median(scales), Median(resolutions));
+  return std::max(Median(scales), Median(resolutions));
+}
+
+// Removes the points off each profile's own line; returns their number.
+double SetAsideOffLine(const std::vector<OwnLine>& lines, double common_scale, std::vector<RawProfile>* profiles) {
   double removed = 0;
   std::vector<double> distances;
   for (size_t k = 0; k < profiles->size(); ++k) {
     RawProfile& profile = (*profiles)[k];
     if (profile.y.size() < kFewestPoints) continue;
-    const double within = std::max(kOff * std::max(lines[k].scale, common), kRounding * Extent(profile));
+    const RobustLine& line = lines[k].line;
+    const double within = std::max(kOff * std::max(line.scale, common_scale), kRounding * Extent(profile));
     distances.resize(profile.y.size());
-    for (size_t i = 0; i < distances.size(); ++i)
-      distances[i] = std::abs(lines[k].Distance(profile.y[i], profile.z[i]));
+    for (size_t i = 0; i < distances.size(); ++i) distances[i] = std::abs(line.Distance(profile.y[i], profile.z[i]));
     const std::vector<bool> off = Beyond(within, distances);
     if (!off.empty()) Remove(off, &profile);
     removed += CountOf(off);
   }
   return removed;
+}
+
+std::vector<Profile> Compressed(const std::vector<RawProfile>& profiles) {
+  std::vector<Profile> compressed(profiles.size());
+  InParallel(profiles.size(), 0, [&](size_t k) {
+    const RawProfile& profile = profiles[k];
+    compressed[k] = CompressProfile(profile.alpha, profile.y, profile.z, profile.range);
+  });
+  return compressed;
+}
+
+double Largest(const RawProfile& profile) {
+  double largest = 0;
+  for (const auto* column : {&profile.y, &profile.z})
+    for (const double value : *column) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+void LookAt(const Profile& profile, const RawProfile& raw, LagSums* lag_sums, ResidualHistogram* histogram) {
+  if (profile.pure_error.dof == 0) return;
+  const std::vector<double> residuals = ResidualsFromLine(profile, raw.y, raw.z);
+  lag_sums->Add(residuals);
+  histogram->Add(residuals);
 }
 
 // The plane on which most profiles of a placement lie, whatever the others see.
@@ -188,6 +224,82 @@ void DistancesFrom(const RobustPlane& plane, const System& system, const RawProf
   for (double& distance : to) distance = std::abs(distance);
 }
 
+// The points of a segment as seen from a plane: their mean distance and its standard deviation, exactly, from the
+// segment's triangle.
+struct SegmentFromPlane {
+  double count, mean, deviation;
+  std::array<double, 2> ends;
+};
+SegmentFromPlane FromPlane(const RobustPlane& plane, const System& system, double alpha, const ProfileFactor& segment) {
+  const ProfileInTable<double> in_table = system.At(alpha);
+  const Eigen::Vector3d n = in_table.TurnedBack(plane.normal);
+  const double middle = segment(0, 2) / segment(0, 0);
+  const double at_origin =
+      n.dot(in_table.origin) - plane.normal.dot(plane.through) + n.dot(in_table.along_bend) * system.Bend(middle);
+  const Eigen::Vector3d by(at_origin, n.dot(in_table.along_z), n.dot(in_table.along_y));  // of (1, z, y)
+  const Eigen::Vector3d rotated = segment * by;
+  SegmentFromPlane found{
+      segment(0, 0) * segment(0, 0), rotated[0] / segment(0, 0), rotated.tail<2>().norm() / segment(0, 0), {}};
+  const std::array<PseudoPoint, 2> ends = Ends(segment);
+  for (const size_t k : {0, 1}) found.ends[k] = std::abs(by[0] + by[1] * ends[k].z + by[2] * ends[k].y);
+  return found;
+}
+
+// Of |distance| over all points of the segments, each taken as normal.
+double MedianDistance(const std::vector<SegmentFromPlane>& segments) {
+  double all = 0, high = 0;
+  for (const SegmentFromPlane& s : segments) {
+    all += s.count;
+    high = std::max(high, std::abs(s.mean) + 8 * s.deviation);
+  }
+  const auto below = [&](double distance) {
+    double sum = 0;
+    for (const SegmentFromPlane& s : segments) {
+      const double root2 = std::max(s.deviation, 1e-12) * std::numbers::sqrt2;
+      sum += s.count * (std::erf((distance - s.mean) / root2) + std::erf((distance + s.mean) / root2)) / 2;
+    }
+    return sum;
+  };
+  double low = 0;
+  for (int k = 0; k < 40; ++k) {
+    const double half = (low + high) / 2;
+    (below(half) < all / 2 ? low : high) = half;
+  }
+  return high;
+}
+
+// The same of a scan whose points are gone: an eighth of a profile is on the plane or off it.
+PointsOnPlane SetAsideSegments(const RawScan& scan, const RobustPlane& plane, const System& system) {
+  std::vector<std::vector<SegmentFromPlane>> found;
+  std::vector<SegmentFromPlane> on;
+  for (size_t k = 0; k < scan.compressed.size(); ++k) {
+    const Profile& profile = scan.compressed[k];
+    auto& of_profile = found.emplace_back();
+    for (const ProfileFactor& segment : profile.segments)
+      of_profile.push_back(FromPlane(plane, system, profile.alpha, segment));
+    if (!plane.off[k]) on.insert(on.end(), of_profile.begin(), of_profile.end());
+  }
+  const auto [low, high] = Ends(scan.compressed.front().factor);
+  const double within =
+      std::max(kOff * kMadToSigma * MedianDistance(on), kRounding * std::hypot(high.y - low.y, high.z - low.z));
+  PointsOnPlane left;
+  for (size_t k = 0; k < scan.compressed.size(); ++k) {
+    const Profile& profile = scan.compressed[k];
+    std::vector<ProfileFactor> kept;
+    double off = 0;
+    for (size_t i = 0; i < profile.segments.size(); ++i) {
+      const SegmentFromPlane& segment = found[k][i];
+      if (std::max(segment.ends[0], segment.ends[1]) <= within) kept.push_back(profile.segments[i]);
+      else off += segment.count;
+    }
+    left.off += off;
+    if (off == 0) left.compressed.push_back(profile);
+    else if (!kept.empty())
+      left.compressed.push_back(MakeProfile(profile.alpha, profile.count - off, std::move(kept), std::nullopt));
+  }
+  return left;
+}
+
 bool Within(double value, const std::array<double, 2>& range) {
   const double slack = kSlack * (range[1] - range[0]);
   return value >= range[0] - slack && value <= range[1] + slack;
@@ -207,7 +319,7 @@ double Placement::Sweep() const {
   return highest->alpha - lowest->alpha;
 }
 
-PureError Placement::Pure() const {
+PureError PureOf(const std::vector<Profile>& profiles) {
   PureError sum;
   for (const Profile& profile : profiles) {
     sum.sum_of_squares += profile.pure_error.sum_of_squares;
@@ -215,6 +327,8 @@ PureError Placement::Pure() const {
   }
   return sum;
 }
+
+PureError Placement::Pure() const { return PureOf(profiles); }
 
 PureError PureOf(const std::vector<Placement>& placements) {
   PureError sum;
@@ -227,16 +341,29 @@ PureError PureOf(const std::vector<Placement>& placements) {
 
 void Clean(RawScan* scan) {
   InParallel(scan->profiles.size(), 0, [&](size_t k) { OrderAlongLine(&scan->profiles[k]); });
-  scan->off_line = SetAsideOffLine(&scan->profiles);
-  scan->compressed.resize(scan->profiles.size());
-  InParallel(scan->profiles.size(), 0, [&](size_t k) {
-    const RawProfile& profile = scan->profiles[k];
-    scan->compressed[k] = CompressProfile(profile.alpha, profile.y, profile.z, profile.range);
-  });
+  const std::vector<OwnLine> lines = OwnLines(scan->profiles);
+  if (!scan->common_scale) scan->common_scale = CommonScale(scan->profiles, lines);
+  scan->off_line += SetAsideOffLine(lines, *scan->common_scale, &scan->profiles);
+  const bool first = scan->compressed.empty();
+  std::vector<Profile> compressed = Compressed(scan->profiles);
+  scan->compressed.insert(scan->compressed.end(), std::make_move_iterator(compressed.begin()),
+                          std::make_move_iterator(compressed.end()));
+  if (scan->holds_points) return;
+  if (first) scan->seen.histogram.scale = PureOf(scan->compressed).sigma();
+  for (size_t k = 0; k < scan->profiles.size(); ++k) {
+    const RawProfile& raw = scan->profiles[k];
+    for (const double y : raw.y)
+      scan->seen.depths = {std::min(scan->seen.depths[0], y), std::max(scan->seen.depths[1], y)};
+    scan->seen.largest = std::max(scan->seen.largest, Largest(raw));
+    LookAt(scan->compressed[scan->compressed.size() - scan->profiles.size() + k], raw, &scan->seen.lag_sums,
+           &scan->seen.histogram);
+  }
+  scan->profiles.clear();
 }
 
 PointsOnPlane SetAsideOffPlane(const RawScan& scan, const System& system) {
   const RobustPlane plane = FitRobustPlane(scan.compressed, system);
+  if (!scan.holds_points) return SetAsideSegments(scan, plane, system);
   size_t points = 0;
   for (const RawProfile& profile : scan.profiles) points += profile.y.size();
   std::vector<double> on(points);
@@ -280,21 +407,17 @@ Placement MakePlacement(const RawScan& scan, const PointsOnPlane& points) {
   if (scan.off_line > 0) placement.set_aside[kReasonOffLine] = scan.off_line;
   if (points.off > 0) placement.set_aside[kReasonOffPlane] = points.off;
   placement.profiles = points.compressed;
-  for (const RawProfile* profile : points.profiles)
-    for (const auto* column : {&profile->y, &profile->z})
-      for (const double value : *column) placement.largest = std::max(placement.largest, std::abs(value));
+  placement.largest = scan.seen.largest;
+  for (const RawProfile* profile : points.profiles) placement.largest = std::max(placement.largest, Largest(*profile));
   return placement;
 }
 
-void LookAtResiduals(const PointsOnPlane& points, Placement* placement) {
-  placement->histogram.scale = placement->Pure().sigma();
-  for (size_t k = 0; k < points.profiles.size(); ++k) {
-    const Profile& profile = placement->profiles[k];
-    if (profile.pure_error.dof == 0) continue;
-    const std::vector<double> residuals = ResidualsFromLine(profile, points.profiles[k]->y, points.profiles[k]->z);
-    placement->lag_sums.Add(residuals);
-    placement->histogram.Add(residuals);
-  }
+void LookAtResiduals(const RawScan& scan, const PointsOnPlane& points, Placement* placement) {
+  placement->lag_sums = scan.seen.lag_sums;
+  placement->histogram = scan.seen.histogram;
+  if (scan.holds_points) placement->histogram.scale = placement->Pure().sigma();
+  for (size_t k = 0; k < points.profiles.size(); ++k)
+    LookAt(placement->profiles[k], *points.profiles[k], &placement->lag_sums, &placement->histogram);
 }
 
 void ScannedVolume::Extend(double at_alpha, double at_y, double at_z) {

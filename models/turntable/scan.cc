@@ -51,10 +51,22 @@ class Gatherer {
     profile->y.push_back(y);
     profile->z.push_back(z);
     if (range) profile->range.push_back(*range);
+    ++points_;
     return {};
   }
 
   bool by_key() const { return by_key_; }
+  size_t points() const { return points_; }
+  bool ranged() const { return !profiles_.empty() && !profiles_.front().range.empty(); }
+  // All but the last, which may go on.
+  std::vector<RawProfile> TakeComplete() {
+    RawProfile last = std::move(profiles_.back());
+    profiles_.pop_back();
+    std::vector<RawProfile> complete = std::move(profiles_);
+    profiles_.clear();
+    profiles_.push_back(std::move(last));
+    return complete;
+  }
 
   std::vector<RawProfile> Take() {
     std::stable_sort(profiles_.begin(), profiles_.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
@@ -65,7 +77,7 @@ class Gatherer {
   RawProfile* ByAngle(double alpha) {
     if (profiles_.empty() || profiles_.back().alpha != alpha) {
       const size_t like_the_last = profiles_.empty() ? 0 : profiles_.back().y.size();
-      profiles_.push_back({static_cast<double>(profiles_.size()), alpha, {}, {}, {}});
+      profiles_.push_back({static_cast<double>(begun_++), alpha, {}, {}, {}});
       profiles_.back().y.reserve(like_the_last);
       profiles_.back().z.reserve(like_the_last);
     }
@@ -84,13 +96,14 @@ class Gatherer {
   std::map<double, size_t> index_;
   size_t last_ = 0;
   bool by_key_ = false;
+  size_t points_ = 0, begun_ = 0;
 };
 
-bool LooksShuffled(const std::vector<RawProfile>& profiles) {
+bool LooksShuffled(const std::vector<Profile>& profiles) {
   double points = 0;
   std::set<double> angles;
-  for (const RawProfile& profile : profiles) {
-    points += static_cast<double>(profile.y.size());
+  for (const Profile& profile : profiles) {
+    points += profile.count;
     angles.insert(profile.alpha);
   }
   return points < 2 * static_cast<double>(profiles.size()) && 3 * angles.size() < profiles.size();
@@ -132,6 +145,8 @@ Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense, const std::f
   Gatherer gatherer(scan.format.path);
   ScanBatch batch;
   SensorColumns points;
+  RawScan result;
+  result.name = scan.name;
   for (;;) {
     SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
     if (!more) break;
@@ -144,13 +159,20 @@ Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense, const std::f
                                            points.y[i], points.z[i],
                                            points.range.empty() ? nullptr : &points.range[i]));
     }
+    if (gatherer.points() > kHeldPoints && !gatherer.by_key() && !gatherer.ranged()) {
+      result.holds_points = false;
+      result.profiles = gatherer.TakeComplete();
+      if (!result.profiles.empty()) Clean(&result);
+    }
     progress(static_cast<double>(reader->bytes_read()) /
              static_cast<double>(std::max<int64_t>(1, reader->bytes_total())));
   }
-  RawScan result{scan.name, gatherer.Take(), {}, static_cast<double>(reader->missing()), 0, {}};
-  if (result.profiles.empty())
+  if (gatherer.points() == 0)
     return Error{scan.format.path.string() + ": target " + scan.name + ": no point is left; widen its keep: intervals"};
-  if (!gatherer.by_key() && LooksShuffled(result.profiles)) result.warning = Say(kLooksShuffled, scan.name);
+  result.missing = static_cast<double>(reader->missing());
+  result.profiles = gatherer.Take();
+  Clean(&result);
+  if (!gatherer.by_key() && LooksShuffled(result.compressed)) result.warning = Say(kLooksShuffled, scan.name);
   return result;
 }
 

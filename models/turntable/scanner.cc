@@ -55,9 +55,11 @@ System MiddleOf(const GridBox& box, const System& system) {
 
 std::array<double, 2> DepthsOf(const std::vector<RawScan>& scans) {
   std::array<double, 2> depths = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const RawScan& scan : scans)
+  for (const RawScan& scan : scans) {
+    depths = {std::min(depths[0], scan.seen.depths[0]), std::max(depths[1], scan.seen.depths[1])};
     for (const RawProfile& profile : scan.profiles)
       for (const double y : profile.y) depths = {std::min(depths[0], y), std::max(depths[1], y)};
+  }
   return depths;
 }
 
@@ -74,7 +76,6 @@ Result<std::vector<RawScan>> ReadScans(const Declaration& declaration) {
       done[k] = fraction / static_cast<double>(count);
       progress.Show(std::accumulate(done.begin(), done.end(), 0.0));
     });
-    if (read[k]->ok()) Clean(&**read[k]);
   });
   std::vector<RawScan> scans;
   for (auto& each : read) {
@@ -203,7 +204,7 @@ Result<std::unique_ptr<Scanner>> Compress(const Declaration& declaration, const 
     if (!start.ok()) break;  // Calibrate will say so
     system = start->system;
   }
-  for (size_t k = 0; k < scans.size(); ++k) LookAtResiduals(points[k], &placements[k]);
+  for (size_t k = 0; k < scans.size(); ++k) LookAtResiduals(scans[k], points[k], &placements[k]);
   return std::make_unique<Scanner>(declaration, model, std::move(placements));
 }
 

@@ -39,7 +39,7 @@ std::vector<Placement> Placements(bool lidar) {
     scan.off_line = 5;
     const PointsOnPlane points = SetAsideOffPlane(scan, scene.system);
     placements.push_back(MakePlacement(scan, points));
-    LookAtResiduals(points, &placements.back());
+    LookAtResiduals(scan, points, &placements.back());
   }
   return placements;
 }
