@@ -34,7 +34,7 @@ class Model {
     std::vector<double> joints;
     int socket = 0;
   };
-  struct Target {
+  struct Target {  // NOLINT(bugprone-reserved-identifier): of the copy of an array that clang makes
     std::string name;
     std::vector<View> views;
     Eigen::Vector3d direction =

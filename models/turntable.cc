@@ -105,8 +105,13 @@ struct Placed {
 // them alone. What turns the profile moves n, the normal turned back to the profiler, by dn/da = (-n_y, n_x, 0).
 class ProfileDerivatives {
  public:
-  ProfileDerivatives(const Placed& placed, double alpha, const double* q)
-      : placed_(placed), q_(q), alpha_(alpha), in_table_(alpha, q), n_(in_table_.TurnedBack(placed.normal)) {}
+  ProfileDerivatives(const Placed& placed, const double* q) : placed_(placed), q_(q), in_table_(0, q) {}
+
+  void TurnTo(double alpha) {
+    alpha_ = alpha;
+    in_table_.TurnTo(alpha, q_);
+    n_ = in_table_.TurnedBack(placed_.normal);
+  }
 
   Four Value() const {
     Four at = Along(n_);
@@ -168,7 +173,7 @@ class ProfileDerivatives {
 
   const Placed& placed_;
   const double* q_;
-  double alpha_;
+  double alpha_ = 0;
   ProfileInTable<double> in_table_;
   Eigen::Vector3d n_;
 };
@@ -182,19 +187,24 @@ void Model::Jacobian(const Target& plane, std::span<const View> profiles, const 
   const bool formed = !std::all_of(seen.q + kForm, seen.q + kForm + kFormModes, IsZero<double>);
   std::ptrdiff_t rows = 0;
   for (const View& profile : profiles) rows += Points(profile);
+  const auto moves = [&](int k) { return seen[k] != 0; };
+  const bool quiet = !seen.point && !moves(kNoiseY) && !moves(kNoiseZ) && !moves(kLineOffset) && !moves(kLineSlope);
+  const bool bends_by = moves(kLinearity) || std::find(seeds.begin(), seeds.end(), kLinearity) != seeds.end();
   Seen<double> q = seen;
+  ProfileDerivatives derivatives(placed, q.q);
   for (const View& profile : profiles) {
     const int points = Points(profile);
-    const ProfileDerivatives derivatives(placed, profile.alpha, q.q);
+    const bool bends = bends_by && profile.bend.size();
+    derivatives.TurnTo(profile.alpha);
     const Four at = derivatives.Value();
     const double along_noise = profile.along_range ? -at.A : at.Y, scale = depth ? 1 / along_noise : 1;
-    // The rows of one change of the four numbers; along: the change of along_noise.
+    // The row of one change of the four numbers; along: the change of along_noise.
     const auto row = [&](int i, const Four& four, double along) {
       const PseudoPoint& p = profile.points[i];
       double sum = p.weight * (four.A + four.Y * p.y + four.Z * p.z);
-      if (profile.bend.size()) sum += four.B * profile.bend[i];
-      if (q.point) sum -= along * q(i, kNoiseY) + four.Z * q(i, kNoiseZ);
-      else sum -= along * q[kNoiseY] + four.Z * q[kNoiseZ];
+      if (bends) sum += four.B * profile.bend[i];
+      if (quiet) return sum;
+      sum -= along * q(i, kNoiseY) + four.Z * q(i, kNoiseZ);
       if (profile.line.size())
         sum -= along * (profile.line(i, 0) * q[kLineOffset] + profile.line(i, 1) * q[kLineSlope]);
       return sum;

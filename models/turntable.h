@@ -130,6 +130,7 @@ struct ProfileInTable {
 
   // q: by Model::Index.
   ProfileInTable(double alpha, const T* q);
+  void TurnTo(double alpha, const T* q);  // another profile of the same system
 
   Vector Turned(const Vector& v) const { return {-(c * v[0] + s * v[1]), s * v[0] - c * v[1], v[2]}; }
   Vector TurnedBack(const Vector& v) const { return {-(c * v[0] - s * v[1]), -(s * v[0] + c * v[1]), v[2]}; }
@@ -165,13 +166,20 @@ struct System {
 };
 
 template <class T>
-ProfileInTable<T>::ProfileInTable(double alpha, const T* q) {
+void ProfileInTable<T>::TurnTo(double alpha, const T* q) {
   using std::cos, std::sin;
-  const T a =
-      alpha - (q[Model::kEncoderJitter] + cos(alpha) * q[Model::kEncoderCos1] + sin(alpha) * q[Model::kEncoderSin1] +
-               cos(2 * alpha) * q[Model::kEncoderCos2] + sin(2 * alpha) * q[Model::kEncoderSin2]);
+  T a = alpha - q[Model::kEncoderJitter];
+  if (!std::all_of(q + Model::kEncoderCos1, q + Model::kEncoderSin2 + 1, IsZero<T>))
+    a -= cos(alpha) * q[Model::kEncoderCos1] + sin(alpha) * q[Model::kEncoderSin1] +
+         cos(2 * alpha) * q[Model::kEncoderCos2] + sin(2 * alpha) * q[Model::kEncoderSin2];
   c = cos(a);
   s = sin(a);
+}
+
+template <class T>
+ProfileInTable<T>::ProfileInTable(double alpha, const T* q) {
+  using std::cos, std::sin;
+  TurnTo(alpha, q);
   const T growth = 1.0 + q[Model::kExpansion];
   origin = {-q[Model::kM] * growth, q[Model::kN] * growth, T(0.0)};
   const T cx = cos(q[Model::kTiltX]), sx = sin(q[Model::kTiltX]), cy = cos(q[Model::kTiltY]),

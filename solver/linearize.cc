@@ -123,6 +123,8 @@ void Stack(std::span<const Block> blocks, const std::vector<double>& values, std
     rows += block.size();
   }
   if (first) first->push_back(rows);
+  if (!blocks.empty() && CountOfWhole(blocks) == blocks.size())
+    return EvaluateWhole(blocks, values, seeds, r, jacobian);
   r->resize(rows);
   if (jacobian) jacobian->resize(rows, std::ssize(seeds));
   Eigen::VectorXd part_r;

@@ -18,6 +18,7 @@ constexpr Message<int> kOutOfSteps{"solver.out_of_steps", "no convergence after 
 constexpr int kStepsFromStart = 12;
 constexpr int kPolishSteps = 100;     // large residuals let Gauss-Newton gain a fifth of a digit a step
 constexpr double kNegligible = 1e-3;  // of a standard uncertainty
+constexpr double kLeastRatio = 1e-2;  // of two steps: two may by chance differ more than the next two
 constexpr double kSettled = 1e-10;    // of a standard uncertainty: nothing is left to gain
 
 // All rows of a target as Ceres sees them: a function of the system's estimated quantities and the target's own.
@@ -159,10 +160,15 @@ class ScaledProducts {
   Eigen::LLT<Eigen::MatrixXd> llt_;
 };
 
+struct Buffers {  // to be used again: they are large
+  Eigen::VectorXd r;
+  Eigen::MatrixXd jacobian;
+};
+
 // The same by products of the columns: several times faster than by QR, and where the columns are far from dependent
 // the step that is left at the end is as small, because it is computed anew from the residuals (Bjorck, Numerical
-// Methods for Least Squares Problems, 1996, 6.6.5). No QR, no step: nothing.
-std::optional<NextStep> ByProducts(const Problem& problem, const Estimate& at, Storey storey) {
+// Methods for Least Squares Problems, 1996, 6.6.5). Nothing where they are not.
+std::optional<NextStep> ByProducts(const Problem& problem, const Estimate& at, Storey storey, Buffers* buffers) {
   const std::vector<int> system = problem.With({Scope::kSystem}, Role::kEstimate);
   const std::vector<int> own = problem.With({Scope::kTarget}, Role::kEstimate);
   std::vector<int> seeds = system;
@@ -177,8 +183,7 @@ std::optional<NextStep> ByProducts(const Problem& problem, const Estimate& at, S
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd pull = Eigen::VectorXd::Zero(n), squares = pull;
   NextStep next;
-  Eigen::VectorXd r;
-  Eigen::MatrixXd jacobian;
+  auto& [r, jacobian] = *buffers;
   for (size_t t = 0; t < problem.targets.size(); ++t) {
     Stack(storey == Storey::kNodes ? problem.targets[t].nodes : problem.targets[t].views, Values(problem, at, t), seeds,
           &r, &jacobian);
@@ -240,10 +245,12 @@ bool IsTiny(const Estimate& step, const Estimate& x, double part) {
 
 // Gauss-Newton steps as long as they gain something; so many, or where these converge as many as there may be.
 void Settle(const Problem& problem, Storey storey, int most_steps, Fit* fit) {
+  Buffers buffers;
   const auto next_step = [&](const Estimate& at) {
-    std::optional<NextStep> next = ByProducts(problem, at, storey);
+    std::optional<NextStep> next = ByProducts(problem, at, storey, &buffers);
     return next ? *std::move(next) : ByRows(problem, at, storey);
   };
+  const double count = std::max(1.0, problem.Count());
   NextStep here = next_step(fit->estimate);
   double last = std::numeric_limits<double>::infinity();
   for (int k = 0; k < most_steps || (fit->converged && k < kPolishSteps); ++k) {
@@ -252,14 +259,25 @@ void Settle(const Problem& problem, Storey storey, int most_steps, Fit* fit) {
       break;
     }
     // Length over noise is the relative offset of Bates and Watts (1981): no quantity moves by more of its uncertainty.
-    const double noise = std::sqrt(here.cost / std::max(1.0, problem.Count()));
+    const double noise = std::sqrt(here.cost / count);
     const bool tiny = IsTiny(here.step, fit->estimate, kTiny);
     fit->converged = tiny || here.length <= kNegligible * noise;
     // A step that is no shorter than the last is rounding; a tiny one is worth its time if it gains two digits.
     if (here.length <= kSettled * noise || (fit->converged && here.length >= (tiny ? 0.01 : 1) * last)) break;
+    // Each step shortens the error by about the same factor or more (Dennis and Schnabel, Numerical Methods for
+    // Unconstrained Optimization, 1983, 10.2): the next one would be nothing.
+    const double ratio = std::max(here.length / last, kLeastRatio);
+    const bool is_last = k > 0 && here.length * ratio <= kSettled * noise;
     last = here.length;
     Estimate next = fit->estimate;
     Add(here.step, &next);
+    if (is_last) {
+      fit->estimate = std::move(next);
+      fit->converged = true;
+      ++fit->iterations;
+      here.cost -= here.length * here.length;
+      break;
+    }
     NextStep there = next_step(next);
     ++fit->iterations;
     // Large residuals may keep Gauss-Newton from settling better than Levenberg-Marquardt did.

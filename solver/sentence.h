@@ -14,7 +14,7 @@ struct Sentence {
   std::string english = {}, german = {}, id = {};
 
   bool empty() const { return english.empty(); }
-  operator const std::string&() const { return english; }  // everywhere but on the page
+  operator const std::string&() const { return english; }  // NOLINT(google-explicit-constructor): all but the page
   bool operator==(const Sentence&) const = default;
   friend std::ostream& operator<<(std::ostream& out, const Sentence& sentence) { return out << sentence.english; }
 };

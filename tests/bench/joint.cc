@@ -118,7 +118,7 @@ void CompareJoint(const LargeData& data, const std::filesystem::path& scipy_scri
   for (const Residuals residuals : {Residuals::kPlane, Residuals::kDepth}) {
     const bool plane = residuals == Residuals::kPlane;
     const std::string name = plane ? "plain joint fit" : "depth-residual joint fit";
-    const double at_least = plane ? 10'000 : 300;
+    const double at_least = plane ? 10'000 : 1'000;
     Say(name + ": ours");
     Ours ours = Solve(data, residuals);
     Say(name + ": Ceres, one residual per point (half a minute)");

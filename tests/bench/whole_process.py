@@ -132,6 +132,7 @@ def main(program: str, folder: str) -> None:
     huge = bench.simulated("huge", "--profiles=500", "--points=8000", "--format=npy")
     bench.compare("refine, 12 million points in 1500 profiles, .npy; other: numpy.load", bench.refine(huge),
                   python(LOAD.format(folder=str(huge))), rounds=3)
+    bench.limit("... memory", bench.refine(huge)()[1], "MB", 150)
     many = [bench.simulated(f"profiles_{n}", f"--profiles={n}", "--points=20") for n in (1000, 4000)]
     bench.compare("refine, 12,000 profiles of 20 points; other: 3,000 of them; linear", bench.refine(many[1]),
                   bench.refine(many[0]), 5)

@@ -24,7 +24,7 @@ class BadInputTest : public CliTest {
 
   // What the data set says without damage; refines it into `out`, which is then the old result again.
   Json Undamaged() const {
-    const Json result = Refined(MakeData("undamaged"));
+    Json result = Refined(MakeData("undamaged"));
     WriteWhole(Path("out") / "calibration.json", kOld);
     return result;
   }

@@ -14,7 +14,7 @@ class RecomputeTest : public CliTest {
  protected:
   // Refines, deletes the data set and returns the result, kept in folder_/old.
   Json Old(const fs::path& data, int exit_code = 0, const std::vector<std::string>& flags = {}) const {
-    const Json old = Refined(data, exit_code, flags);
+    Json old = Refined(data, exit_code, flags);
     fs::remove_all(data);
     fs::rename(Path("out"), Path("old"));
     return old;

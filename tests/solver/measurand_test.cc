@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include "solver/calibrate.h"
+#include "solver/uncertainty/gum.h"
 #include "tests/solver/line_model.h"
 
 namespace scancal {
