@@ -51,7 +51,8 @@ Result<Calibration> Calibrated(const std::vector<std::string>& arguments, Refine
   SCANCAL_RETURN_IF_ERROR(CheckLanguage());
   SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, LoadAndEcho(arguments));
   const std::filesystem::path file = std::filesystem::path(FLAGS_out) / "calibration.json";
-  SCANCAL_RETURN_IF_ERROR(OutputFile::Create(file));  // told before the work, not after it
+  // Told before the work, not after it; and Ctrl-C says that it is missing.
+  SCANCAL_ASSIGN_OR_RETURN(const OutputFile until_written, OutputFile::Create(file));
   // Reading a file twice takes as long as a fit.
   auto inputs = std::async(std::launch::async, [&] { return InputsOf(*scanner); });
   choice.figures = false;

@@ -21,6 +21,7 @@ struct Slot {
   std::atomic<bool> taken = false;
   std::atomic<pid_t> owner = 0;  // 0: the path is not valid; a forked child must not remove its parent's files
   char path[PATH_MAX] = {};
+  char target[PATH_MAX] = {};  // as the caller named it
 };
 constexpr int kSlots = 32;
 std::array<Slot, kSlots> slots;
@@ -28,10 +29,16 @@ static_assert(std::atomic<pid_t>::is_always_lock_free);
 
 constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 
+void Tell(const char* text) {
+  [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, text, std::strlen(text));
+}
+
 void RemoveFilesAndRaise(int signal) {
   const pid_t self = ::getpid();
   for (const Slot& slot : slots) {
-    if (slot.owner == self) ::unlink(slot.path);
+    if (slot.owner != self) continue;
+    ::unlink(slot.path);
+    for (const char* part : {"\nscancal: interrupted: ", slot.target, " was not written\n"}) Tell(part);
   }
   std::signal(signal, SIG_DFL);
   std::raise(signal);  // delivered as soon as this handler returns
@@ -48,22 +55,23 @@ void InstallHandlers() {
   }
 }
 
-int TakeSlot(const std::string& path) {
+int TakeSlot(const std::string& path, const std::string& target) {
   for (int i = 0; i < kSlots; ++i) {
     Slot& slot = slots[static_cast<size_t>(i)];
     if (slot.taken.exchange(true)) continue;
     std::memcpy(slot.path, path.c_str(), path.size() + 1);
+    std::strncpy(slot.target, target.c_str(), sizeof slot.target - 1);
     slot.owner = ::getpid();
     return i;
   }
   return -1;
 }
 
-// A name for a temporary file in a folder. While it lives, SIGINT, SIGTERM and SIGHUP remove the file before they end
-// the program, unless the program handles or ignores them itself.
+// A name for a temporary file in a folder. While it lives, SIGINT, SIGTERM and SIGHUP remove the file and say that its
+// target was not written before they end the program, unless the program handles or ignores them itself.
 class TemporaryName {
  public:
-  static Result<TemporaryName> In(const fs::path& folder);
+  static Result<TemporaryName> In(const fs::path& folder, const fs::path& target);
   TemporaryName(TemporaryName&& other) noexcept { *this = std::move(other); }
   TemporaryName& operator=(TemporaryName&& other) noexcept {
     std::swap(path_, other.path_);
@@ -79,7 +87,7 @@ class TemporaryName {
   int slot_ = -1;
 };
 
-Result<TemporaryName> TemporaryName::In(const fs::path& folder) {
+Result<TemporaryName> TemporaryName::In(const fs::path& folder, const fs::path& target) {
   static std::atomic<int> count = 0;
   std::error_code error;
   const std::string name = ".scancal-" + std::to_string(::getpid()) + "-" + std::to_string(++count) + ".tmp";
@@ -87,7 +95,7 @@ Result<TemporaryName> TemporaryName::In(const fs::path& folder) {
   std::string path = (fs::absolute(folder, error) / name).string();
   if (path.size() >= PATH_MAX) return Error{folder.string() + ": the path is too long"};
   InstallHandlers();
-  const int slot = TakeSlot(path);
+  const int slot = TakeSlot(path, target.string());
   if (slot < 0) return Error{folder.string() + ": more than " + std::to_string(kSlots) + " files written at a time"};
   return TemporaryName(std::move(path), slot);
 }
@@ -187,7 +195,7 @@ Result<OutputFile> OutputFile::Create(const fs::path& path) {
   SCANCAL_RETURN_IF_ERROR(CheckTarget(path));
   const fs::path target = BehindLink(path);
   SCANCAL_ASSIGN_OR_RETURN(const fs::path folder, MakeFolder(target));
-  SCANCAL_ASSIGN_OR_RETURN(TemporaryName temporary, TemporaryName::In(folder));
+  SCANCAL_ASSIGN_OR_RETURN(TemporaryName temporary, TemporaryName::In(folder, path));
   auto impl = std::make_unique<Impl>(path, target, std::move(temporary));
   // A file of this name can only be left from a killed program that had our number.
   impl->descriptor =

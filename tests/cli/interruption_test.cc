@@ -96,10 +96,15 @@ TEST_F(InterruptionTest, CtrlCInAMonteCarloLeavesTheOldResult) {
     WriteWhole(Path("out") / "calibration.json", "old");
     RunningProgram program(
         {"montecarlo", data_.string(), "--trials=10000000", "--threads=2", "--out=" + Path("out").string()});
-    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (NamesIn(Path("out")).size() < 2 && !program.HasEnded() && std::chrono::steady_clock::now() < give_up)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));  // until it has taken its place
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
     ASSERT_FALSE(program.HasEnded());
     program.Signal(signal);
-    EXPECT_EQ(program.Wait().signal, signal);
+    const Outcome outcome = program.Wait();
+    EXPECT_EQ(outcome.signal, signal);
+    EXPECT_THAT(outcome.err, HasSubstr("calibration.json was not written"));
     EXPECT_THAT(NamesIn(Path("out")), ElementsAre("calibration.json"));
     EXPECT_EQ(ReadWhole(Path("out") / "calibration.json"), "old");
   }
