@@ -28,46 +28,80 @@ void Eliminate(const Eigen::MatrixXd& own, Eigen::MatrixXd system, LinearTarget*
 constexpr double kNoEffect = 1e-9;   // relative to a quantity's effect before elimination: rounding
 constexpr double kTakesPart = 0.05;  // of a unit vector
 
+// All data rows of a target as they look from one point; its views are parts of them.
 class AffineRows final : public Rows {
  public:
-  AffineRows(const Rows& rows, std::vector<double> q0, std::span<const int> known)
-      : q0_(std::move(q0)),
-        column_(q0_.size(), -1),
-        r0_(rows.size()),
-        jacobian_(rows.size(), std::ssize(known)),
-        points_(rows.points()),
-        count_(rows.count()) {
-    for (size_t k = 0; k < known.size(); ++k) column_[known[k]] = static_cast<int>(k);
-    rows.Evaluate(q0_.data(), nullptr, known, r0_.data(), known.empty() ? nullptr : jacobian_.data());
-  }
-  int size() const override { return static_cast<int>(r0_.size()); }
+  struct Shared {
+    std::vector<double> q0;
+    std::vector<int> column;  // per quantity, -1: derivative not known
+    Eigen::VectorXd r0;
+    Eigen::MatrixXd jacobian;
+  };
+  AffineRows(std::shared_ptr<const Shared> shared, Eigen::Index first, Eigen::Index size, int points, double count,
+             std::shared_ptr<const Rows> part_of = nullptr)
+      : shared_(std::move(shared)),
+        first_(first),
+        size_(size),
+        points_(points),
+        count_(count),
+        part_of_(std::move(part_of)) {}
+  int size() const override { return static_cast<int>(size_); }
   int points() const override { return points_; }
   double count() const override { return count_; }
+  std::pair<const Rows*, int> PartOf() const override { return {part_of_.get(), static_cast<int>(first_)}; }
   void Evaluate(const double* q, const double* point, std::span<const int> seeds, double* r,
                 double* jacobian) const override {
     CHECK(!point) << "affine rows do not take values of single points";
-    auto residual = Eigen::VectorXd::Map(r, r0_.size());
-    residual = r0_;
-    for (size_t k = 0; k < q0_.size(); ++k) {
-      if (q[k] == q0_[k]) continue;
-      CHECK_GE(column_[k], 0) << "affine rows do not know the derivative by quantity " << k;
-      residual += (q[k] - q0_[k]) * jacobian_.col(column_[k]);
-    }
-    for (size_t k = 0; jacobian && k < seeds.size(); ++k) {
-      CHECK_GE(column_[seeds[k]], 0) << "affine rows do not know the derivative by quantity " << seeds[k];
-      Eigen::VectorXd::Map(jacobian + static_cast<Eigen::Index>(k) * r0_.size(), r0_.size()) =
-          jacobian_.col(column_[seeds[k]]);
-    }
+    const auto by = [&](size_t quantity) {
+      CHECK_GE(shared_->column[quantity], 0) << "affine rows do not know the derivative by quantity " << quantity;
+      return shared_->jacobian.col(shared_->column[quantity]).segment(first_, size_);
+    };
+    auto residual = Eigen::VectorXd::Map(r, size_);
+    residual = shared_->r0.segment(first_, size_);
+    for (size_t k = 0; k < shared_->q0.size(); ++k)
+      if (q[k] != shared_->q0[k]) residual += (q[k] - shared_->q0[k]) * by(k);
+    for (size_t k = 0; jacobian && k < seeds.size(); ++k)
+      Eigen::VectorXd::Map(jacobian + static_cast<Eigen::Index>(k) * size_, size_) = by(static_cast<size_t>(seeds[k]));
   }
 
  private:
-  std::vector<double> q0_;
-  std::vector<int> column_;  // per quantity, -1: derivative not known
-  Eigen::VectorXd r0_;
-  Eigen::MatrixXd jacobian_;
+  std::shared_ptr<const Shared> shared_;
+  Eigen::Index first_, size_;
   int points_;
   double count_;
+  std::shared_ptr<const Rows> part_of_;
 };
+
+// Puts affine rows in the place of a target's data rows.
+void MakeAffine(std::vector<double> at, std::span<const int> known, Target* target) {
+  auto shared = std::make_shared<AffineRows::Shared>();
+  shared->q0 = std::move(at);
+  shared->column.assign(shared->q0.size(), -1);
+  for (size_t k = 0; k < known.size(); ++k) shared->column[known[k]] = static_cast<int>(k);
+  Eigen::Index rows = 0;
+  int points = 0;
+  double count = 0;
+  for (const Block& view : target->views) {
+    if (!view.prior.empty()) continue;
+    rows += view.rows->size();
+    points += view.rows->points();
+    count += view.rows->count();
+  }
+  shared->r0.resize(rows);
+  shared->jacobian.resize(rows, std::ssize(known));
+  const auto all = std::make_shared<AffineRows>(shared, 0, rows, points, count);
+  rows = 0;
+  Eigen::VectorXd r;
+  Eigen::MatrixXd jacobian;
+  for (Block& view : target->views) {
+    if (!view.prior.empty()) continue;
+    Block{view.rows, 1, {}, {}, {}}.Evaluate(shared->q0.data(), known, &r, &jacobian);
+    shared->r0.segment(rows, r.size()) = r;
+    shared->jacobian.middleRows(rows, r.size()) = jacobian;
+    view.rows = std::make_shared<AffineRows>(shared, rows, r.size(), view.rows->points(), view.rows->count(), all);
+    rows += r.size();
+  }
+}
 
 // How many of these blocks, from the first on, are all the rows of something larger, in its order; 0: they are not.
 size_t CountOfWhole(std::span<const Block> blocks) {
@@ -232,9 +266,7 @@ Problem Affine(const Problem& problem, const Estimate& at) {
     Target& target = affine.targets[t];
     target.nodes = {};
     target.interpolation.clear();
-    const std::vector<double> values = Values(problem, at, t);
-    for (Block& view : target.views)
-      if (view.prior.empty()) view.rows = std::make_shared<AffineRows>(*view.rows, values, known);
+    MakeAffine(Values(problem, at, t), known, &target);
   }
   return affine;
 }
