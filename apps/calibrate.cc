@@ -1,8 +1,11 @@
 #include "apps/calibrate.h"
+#include <fmt/format.h>
 #include <gflags/gflags.h>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <future>
+#include <optional>
 #include "apps/command.h"
 #include "io/input_file.h"
 #include "io/json_file.h"
@@ -47,12 +50,41 @@ Result<std::unique_ptr<Scanner>> Load(const std::vector<std::string>& arguments)
   return kind->load(dataset);
 }
 
+// That a result is what its own data say: every estimate and its u to a millionth of u, and the status.
+Result<void> CheckSaysTheSame(const Calibration& found, const Calibration& data, const std::string& file) {
+  constexpr double kOfU = 1e-6;
+  const auto differs = [&](const std::string& what, const std::string& here, const std::string& there) {
+    return Error{file + ": " + what + " is " + here + ", but its own data say " + there +
+                 ": edited, or of another version; refine the data set, or this file, again"};
+  };
+  for (const Parameter& parameter : data.parameters) {
+    if (parameter.role != Role::kEstimate) continue;
+    const Parameter* const here = found.Find(parameter.name);
+    if (!here) return differs(parameter.name, "missing", fmt::format("{:.9g}", parameter.value));
+    for (const auto& [name, number] : {std::pair{"", &Parameter::value}, {"u of ", &Parameter::u}})
+      if (!(std::abs(here->*number - parameter.*number) <= kOfU * parameter.u))
+        return differs(name + parameter.name, fmt::format("{:.9g}", here->*number),
+                       fmt::format("{:.9g}", parameter.*number));
+  }
+  const auto status = [](const Calibration& c) { return c.ok() ? "ok" : "unreliable"; };
+  if (found.ok() != data.ok()) return differs("status", status(found), status(data));
+  return {};
+}
+
 Result<Calibration> Calibrated(const std::vector<std::string>& arguments, RefineChoice choice) {
   SCANCAL_RETURN_IF_ERROR(CheckLanguage());
+  const std::filesystem::path folder = FLAGS_out, file = folder / "calibration.json";
+  // What cannot be written is told before the work, not after it, and Ctrl-C says that it is missing. A folder of its
+  // own is made when there is something to calibrate.
+  std::optional<OutputFile> until_written;
+  const auto reserve = [&]() -> Result<void> {
+    SCANCAL_ASSIGN_OR_RETURN(until_written, OutputFile::Create(file));
+    return {};
+  };
+  const bool is_there = folder.empty() || std::filesystem::is_directory(folder);
+  if (is_there) SCANCAL_RETURN_IF_ERROR(reserve());
   SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, LoadAndEcho(arguments));
-  const std::filesystem::path file = std::filesystem::path(FLAGS_out) / "calibration.json";
-  // Told before the work, not after it; and Ctrl-C says that it is missing.
-  SCANCAL_ASSIGN_OR_RETURN(const OutputFile until_written, OutputFile::Create(file));
+  if (!is_there) SCANCAL_RETURN_IF_ERROR(reserve());
   // Reading a file twice takes as long as a fit.
   auto inputs = std::async(std::launch::async, [&] { return InputsOf(*scanner); });
   choice.figures = false;
@@ -106,12 +138,18 @@ Result<std::unique_ptr<Scanner>> LoadAndEcho(const std::vector<std::string>& arg
 
 Result<Json> FiguresOf(const std::filesystem::path& calibration) {
   const Result<Json> json = ReadJson(calibration);
-  if (!json.ok() || !json->is_object() || HoldsFigures(*json) || !HasData(*json)) return Json();
+  if (!json.ok() || !json->is_object() || HoldsFigures(*json)) return Json();
   const Result<Calibration> found = CalibrationFromJson(*json, calibration.string());
   if (!found.ok()) return Json();
+  if (!HasData(*json)) {
+    std::fprintf(stderr, "scancal: warning: %s: found no compressed data: figures that need them are left out\n",
+                 calibration.c_str());
+    return Json();
+  }
   SCANCAL_ASSIGN_OR_RETURN(const std::unique_ptr<Scanner> scanner, Reload(*json, calibration.string()));
   const RefineChoice choice{.residual = found->residual, .equal_weights = found->equal_weights};
   SCANCAL_ASSIGN_OR_RETURN(const Calibration again, scanner->Calibrate(choice));
+  if (again.converged) SCANCAL_RETURN_IF_ERROR(CheckSaysTheSame(*found, again, calibration.string()));
   const Result<Comparison> comparison = scanner->Compare({.brief = true});
   return FiguresToJson(again, comparison.ok() ? *comparison : Comparison{});  // without what others cannot do
 }

@@ -39,6 +39,10 @@ int RunReport(const std::vector<std::string>& arguments) {
   PageChoice choice{FLAGS_out, FLAGS_pdf, FLAGS_dcc, FLAGS_previous, FLAGS_language};
   if (choice.html.empty() && choice.pdf.empty() && choice.dcc.empty() && FLAGS_figures.empty())
     choice.html = calibration.parent_path() / "report.html";
+  for (const std::filesystem::path& file : {choice.html, choice.pdf, choice.dcc})
+    if (!FLAGS_figures.empty() && file.lexically_normal() == std::filesystem::path(FLAGS_figures).lexically_normal())
+      return Complain("--figures: " + FLAGS_figures +
+                      " is written by the same command; give each file a name of its own");
   const Result<Json> figures = FiguresOf(calibration);
   if (!figures.ok()) return Complain(figures.error().message);
   const Result<bool> written = WritePage(calibration, *figures, choice);

@@ -1,5 +1,7 @@
 """calibration.json -> one page that is filed; started by `scancal report`. It reads that file and standard input."""
-import argparse
+import signal
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # until main() can say what is missing
+import argparse  # noqa: E402
 import json
 import sys
 import traceback
@@ -32,6 +34,7 @@ def main(given: list[str] | None = None) -> int:
     """given: arguments in place of the command line's."""
     choice = arguments(given)
     try:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         check_outputs([choice.out, choice.pdf, choice.dcc], [choice.calibration, choice.previous])
         calibration = read_calibration(choice.calibration)
         if choice.figures:
@@ -54,19 +57,21 @@ def main(given: list[str] | None = None) -> int:
     except Complaint as complaint:
         print(f"scancal: {complaint}", file=sys.stderr)
         return 1
-    except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
-        place = traceback.extract_tb(error.__traceback__)[-1]
-        print(f"scancal: {choice.calibration}: a damaged or edited file, or a mistake of this program "
-              f"({type(error).__name__}: {str(error)[:80]}; {Path(place.filename).name}:{place.lineno}); "
-              "refine the data set again", file=sys.stderr)
-        return 1
     except ModuleNotFoundError as error:
         if error.name not in PACKAGES:
             raise
         print(f"scancal: Python's {error.name} is missing: install {PACKAGES[error.name]}, or run scripts/setup",
               file=sys.stderr)
         return 1
+    except Exception as error:  # whatever an edited file may lead to, in one sentence
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        print(f"scancal: {choice.calibration}: a damaged or edited file, or a mistake of this program "
+              f"({type(error).__name__}: {str(error)[:80]}; {Path(place.filename).name}:{place.lineno}); "
+              "refine the data set again", file=sys.stderr)
+        return 1
     except KeyboardInterrupt:
+        missing = ", ".join(str(file) for file in (choice.out, choice.pdf, choice.dcc) if file)
+        print(f"\nscancal: interrupted: {missing}: not all of it was written", file=sys.stderr)
         return 130  # as a shell has it
     return 0
 

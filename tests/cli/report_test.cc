@@ -93,6 +93,31 @@ TEST_F(ReportTest, TheNumbersOfTheFigures) {
   EXPECT_EQ(ReadWhole(page).size(), ReadWhole(older_page).size());  // but for the file's own hash
 }
 
+TEST_F(ReportTest, AResultThatItsOwnDataDoNotSayIsRefused) {
+  Json result = Refined(MakeData());
+  const auto expect_refused = [&](const ::testing::Matcher<std::string>& sentence) {
+    ExpectRefused(result.dump(), AllOf(HasSubstr("its own data say"), sentence));
+  };
+  const Json sound = result;
+  result["parameters"][0]["value"] = 150;
+  expect_refused(HasSubstr("M is 150"));
+  result = sound;
+  result["parameters"][1]["u"] = result["parameters"][1]["u"].get<double>() / 2;
+  expect_refused(HasSubstr("u of N is"));
+  result = sound;
+  result["status"] = "unreliable";
+  expect_refused(HasSubstr("status is unreliable"));
+}
+
+TEST_F(ReportTest, EachFileHasANameOfItsOwn) {
+  Refined(MakeData());
+  const std::string same = Path("same").string();
+  const Outcome outcome = RunScancal({"report", Path("out").string(), "--out=" + same, "--figures=" + same});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(OneSentence(outcome), HasSubstr("a name of its own"));
+  EXPECT_FALSE(fs::exists(Path("same")));
+}
+
 TEST_F(ReportTest, AFullDiskLeavesTheOldPage) {
   Refined(MakeData());
   const fs::path page = Path("page.html");
