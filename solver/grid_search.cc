@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <thread>
+#include "solver/parallel.h"
 
 namespace scancal {
 namespace {
@@ -49,10 +49,7 @@ GridResult GridSearch(const GridBox& box, int targets,
       if (chunk == 0 && progress) progress(static_cast<double>(i + 1) / static_cast<double>(last));
     }
   };
-  std::vector<std::jthread> others;
-  for (int chunk = 1; chunk < threads; ++chunk) others.emplace_back(search, chunk);
-  search(0);
-  others.clear();  // joins
+  InParallel(static_cast<size_t>(threads), threads, [&](size_t chunk) { search(static_cast<int>(chunk)); });
   for (int chunk = 1; chunk < threads; ++chunk)
     for (int t = 0; t <= targets; ++t) found[0][t].Offer(found[chunk][t].value, found[chunk][t].i, found[chunk][t].j);
 

@@ -45,20 +45,15 @@ Considered ConsideredScores(const Problem& problem, const Estimate& fit, const L
 }
 
 // Without target `out`, from the triangles of (system_left, r) of each target and of the priors. Not finite where the
-// others leave something open.
-Estimate StepWithout(size_t out, const std::vector<TriangularFactor>& triangles, const Linearization& linear) {
-  const Eigen::Index n = linear.factor.cols();
-  TriangularFactor rest(static_cast<int>(n) + 1);
+// others leave something open. rest: the linearization of all; its triangle becomes that of the others.
+Estimate StepWithout(size_t out, const std::vector<TriangularFactor>& triangles, Linearization* rest) {
+  const Eigen::Index n = rest->factor.cols();
+  TriangularFactor merged(static_cast<int>(n) + 1);
   for (size_t t = 0; t < triangles.size(); ++t)
-    if (t != out) rest.Merge(triangles[t]);
-  Estimate step;
-  step.system = -rest.R().topLeftCorner(n, n).triangularView<Eigen::Upper>().solve(rest.R().topRightCorner(n, 1));
-  for (size_t t = 0; t + 1 < linear.targets.size(); ++t) {
-    const LinearTarget& target = linear.targets[t];
-    const Eigen::VectorXd rhs = target.q.transpose() * target.r + target.coupling * step.system;
-    step.targets.emplace_back(-target.own_factor.triangularView<Eigen::Upper>().solve(rhs));
-  }
-  return step;
+    if (t != out) merged.Merge(triangles[t]);
+  rest->factor = merged.R().topLeftCorner(n, n);
+  rest->rhs = merged.R().topRightCorner(n, 1);
+  return GaussNewtonStep(*rest);
 }
 
 // Whether the residuals without target `out` are where that step says, to a hundredth of the noise all together: then
@@ -95,18 +90,19 @@ Jackknife LeaveOneTargetOut(const Problem& problem, const Fit& fit, const Linear
     if (rows.size()) rows << target.system_left, target.r;
     triangles.emplace_back(static_cast<int>(rows.cols())).Add(rows);
   }
+  Linearization rest = linear;
   for (std::ptrdiff_t t = 0; t < m; ++t) {
     const auto out = static_cast<size_t>(t);
-    if (const Estimate step = StepWithout(out, triangles, linear);
+    if (const Estimate step = StepWithout(out, triangles, &rest);
         step.system.allFinite() && IsLinear(problem, fit.estimate, step, out, linear)) {
       result.estimates.row(t) = (fit.estimate.system + step.system).transpose();
       continue;
     }
-    Problem rest = problem;
+    Problem others = problem;
     Estimate start = fit.estimate;
-    rest.targets.erase(rest.targets.begin() + t);
+    others.targets.erase(others.targets.begin() + t);
     start.targets.erase(start.targets.begin() + t);
-    const Fit without = Refine(rest, start);
+    const Fit without = Refine(others, start);
     result.estimates.row(t) = without.estimate.system.transpose();
     result.converged &= without.converged;
   }
