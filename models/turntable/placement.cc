@@ -1,5 +1,4 @@
 // A placement: what is off the lines of its profiles or off its plane is set aside, the rest compressed.
-#include <fmt/format.h>
 #include <glog/logging.h>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -8,7 +7,6 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include "io/units.h"
 #include "models/line/robust_line.h"
 #include "models/median.h"
 #include "models/turntable/compress.h"
@@ -25,7 +23,6 @@ const char kReasonOffLine[] = "off the line of their profile", kReasonOffPlane[]
 constexpr double kOffPlane = 6;  // median distances of profiles
 constexpr size_t kSubsample = 48, kFewestProfiles = 6;
 constexpr double kRounding_mm = 1e-6;  // nearer than this is on the plane
-constexpr double kSlack = 0.01;        // of a range: rounded angles and uneven lines are not outside
 
 double Extent(const RawProfile& profile) {
   const auto [y0, y1] = std::minmax_element(profile.y.begin(), profile.y.end());
@@ -300,11 +297,6 @@ PointsOnPlane SetAsideSegments(const RawScan& scan, const RobustPlane& plane, co
   return left;
 }
 
-bool Within(double value, const std::array<double, 2>& range) {
-  const double slack = kSlack * (range[1] - range[0]);
-  return value >= range[0] - slack && value <= range[1] + slack;
-}
-
 }  // namespace
 
 double Placement::Points() const {
@@ -418,30 +410,6 @@ void LookAtResiduals(const RawScan& scan, const PointsOnPlane& points, Placement
   if (scan.holds_points) placement->histogram.scale = placement->Pure().sigma();
   for (size_t k = 0; k < points.profiles.size(); ++k)
     LookAt(placement->profiles[k], *points.profiles[k], &placement->lag_sums, &placement->histogram);
-}
-
-void ScannedVolume::Extend(double at_alpha, double at_y, double at_z) {
-  for (const auto& [range, value] : {std::pair{&alpha, at_alpha}, {&y, at_y}, {&z, at_z}})
-    *range = {std::min((*range)[0], value), std::max((*range)[1], value)};
-}
-
-std::string ScannedVolume::Beyond(double at_alpha, double at_y, double at_z) const {
-  const auto told = [](const char* name, double value, const std::array<double, 2>& range, const char* unit) {
-    return fmt::format("{} = {:.4g} {} (scanned: {:.4g} to {:.4g} {})", name, value, unit, range[0], range[1], unit);
-  };
-  if (!Within(at_alpha, alpha))
-    return told("alpha", at_alpha / kDegree, {alpha[0] / kDegree, alpha[1] / kDegree}, "deg");
-  if (!Within(at_y, y)) return told("y", at_y, y, "mm");
-  if (!Within(at_z, z)) return told("z", at_z, z, "mm");
-  return "";
-}
-
-ScannedVolume VolumeOf(const std::vector<Placement>& placements) {
-  ScannedVolume volume;
-  for (const Placement& placement : placements)
-    for (const Profile& profile : placement.profiles)
-      for (const PseudoPoint& end : Ends(profile.factor)) volume.Extend(profile.alpha, end.y, end.z);
-  return volume;
 }
 
 }  // namespace scancal::turntable

@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 #include "io/progress.h"
+#include "io/units.h"
 
 namespace scancal::turntable {
 namespace {
@@ -77,7 +78,38 @@ std::vector<std::string> OutsideOf(const ScannedVolume& volume, const std::vecto
                   count, points.size(), first)};
 }
 
+constexpr double kSlack = 0.01;  // of a range: rounded angles and uneven lines are not outside
+
+bool Within(double value, const std::array<double, 2>& range) {
+  const double slack = kSlack * (range[1] - range[0]);
+  return value >= range[0] - slack && value <= range[1] + slack;
+}
+
 }  // namespace
+
+void ScannedVolume::Extend(double at_alpha, double at_y, double at_z) {
+  for (const auto& [range, value] : {std::pair{&alpha, at_alpha}, {&y, at_y}, {&z, at_z}})
+    *range = {std::min((*range)[0], value), std::max((*range)[1], value)};
+}
+
+std::string ScannedVolume::Beyond(double at_alpha, double at_y, double at_z) const {
+  const auto told = [](const char* name, double value, const std::array<double, 2>& range, const char* unit) {
+    return fmt::format("{} = {:.4g} {} (scanned: {:.4g} to {:.4g} {})", name, value, unit, range[0], range[1], unit);
+  };
+  if (!Within(at_alpha, alpha))
+    return told("alpha", at_alpha / kDegree, {alpha[0] / kDegree, alpha[1] / kDegree}, "deg");
+  if (!Within(at_y, y)) return told("y", at_y, y, "mm");
+  if (!Within(at_z, z)) return told("z", at_z, z, "mm");
+  return "";
+}
+
+ScannedVolume VolumeOf(const std::vector<Placement>& placements) {
+  ScannedVolume volume;
+  for (const Placement& placement : placements)
+    for (const Profile& profile : placement.profiles)
+      for (const PseudoPoint& end : Ends(profile.factor)) volume.Extend(profile.alpha, end.y, end.z);
+  return volume;
+}
 
 Result<System> SystemOf(const Calibration& calibration) {
   System system;
