@@ -25,6 +25,7 @@ struct RawProfile {
   double alpha = 0;           // rad, clockwise seen from +Z
   std::vector<double> y, z;   // mm
   std::vector<double> range;  // mm; a lidar's, else empty
+  double time = 0;            // of the column `time`; without it the running number
 };
 
 void OrderAlongLine(RawProfile* profile);  // by z; points at one z keep their order
@@ -40,6 +41,7 @@ struct Profile {
   ProfileFactor factor;                 // of all points: the segments, merged
   std::optional<ProfileFactor> ranged;  // a lidar's: the same rows times the range at the profile's own line
   PureError pure_error;                 // of depth (of range) about the profile's own line
+  double time = 0;                      // as logged, or the running number in the file
 };
 
 // From what is kept to what follows from it: factor and pure error.
@@ -59,7 +61,12 @@ struct RawScan {
   std::vector<Profile> compressed;   // after Clean
   double missing = 0;                // no return
   double off_line = 0;               // removed by Clean: off the line of their profile
-  Sentence warning;                  // empty: none
+  double copied = 0;                 // removed by DropCopies
+  double lines = 0;                  // profiles that were read
+  std::vector<Sentence> warnings;
+  bool timed = false;                        // a column says the time
+  double step = 0;                           // in which depth (range) is written, mm; after DropCopies
+  std::optional<bool> turned_within_angles;  // whether profiles at one angle were taken while it turned
   // False of a large scan: its points are gone as soon as their profile is compressed. Then Clean is called for some
   // profiles after the others, and adds what is told from points.
   bool holds_points = true;
@@ -77,13 +84,35 @@ struct RawScan {
 // order; without it a change of the angle starts a profile. Of more than kHeldPoints points of a profiler whose
 // profiles come one after the other none is kept. progress: told the finished fraction.
 inline constexpr size_t kHeldPoints = 1'000'000;
-Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense, const std::function<void(double)>& progress);
+Result<RawScan> ReadScan(const ScanDeclaration& scan, const Senses& senses,
+                         const std::function<void(double)>& progress);
+
+// A value of depth (of the range, as it is) that stands in most profiles of a scan, apart from all others: what a
+// sensor writes where it sees nothing, and nobody declared. A lidar with steps of 1 mm repeats itself, too, but then
+// the steps beside a value are as full.
+std::optional<double> RepeatedValue(const std::vector<RawProfile>& profiles);
+
+// Profiles that were taken one after the other at one written angle, without a column that tells them apart: where the
+// lines differ by more than their noise, the table has turned, and each is a profile by itself.
+void SplitAtRoundedAngles(RawScan* scan);
+void NoteRoundedAngles(RawScan* scan);  // adds the warning, once all is read
+
+// Angles that wrap at 360 degrees, or run through many turns, as angles of one sweep, those of the scans near each
+// other. A scan that is seen over more than half a turn is left as it is.
+void Unwind(std::vector<RawScan>* scans);
+
+// Leaves out profiles and points that are copies of others, of the same scan or another, and says so: they agree as
+// closely as their digits tell, or to 2 % of their noise, in nine points of ten, and for independent readings of that
+// noise and resolution the probability of it is below e^-40. Where readings scatter less than a step they repeat
+// themselves, and nothing is a copy. A target of which less than a fifth is left goes as a whole. Where the points are
+// gone only what is equal to 12 digits is a copy.
+void DropCopies(std::vector<RawScan>* scans);
 
 // One batch of a scan as points of the sensor: columns angle (rad, by the sense), y, z, and range for a lidar.
 struct SensorColumns {
   std::vector<double> alpha, y, z, range;
 };
-void ToSensor(double sense, const ScanBatch& batch, SensorColumns* points);
+void ToSensor(const Senses& senses, const ScanBatch& batch, SensorColumns* points);
 
 // The profiles as the model sees them, with the columns of errors that move a profile's line.
 std::vector<Model::View> Views(const std::vector<Profile>& profiles, Model::Residuals residuals);
@@ -110,7 +139,8 @@ struct Placement {
   double largest = 0;                       // |coordinate|, mm, over all kept points
   LagSums lag_sums;                         // of the residuals from each profile's own line, with three points or more
   ResidualHistogram histogram;              // of the same, by their pooled standard deviation
-  Sentence warning;                         // of reading; empty: none
+  std::vector<Sentence> warnings;           // of reading
+  bool timed = false;                       // the profiles' times were logged; else they are their numbers
   double Points() const;
   double Sweep() const;    // largest minus smallest angle, rad
   PureError Pure() const;  // of all profiles

@@ -130,7 +130,14 @@ std::optional<Placement> ReadTarget(const Json& json) {
     return std::nullopt;
   Placement placement;
   placement.name = json["name"];
-  placement.warning = *warning;
+  if (!warning->empty()) placement.warnings.push_back(*warning);
+  if (json.contains("more_warnings")) {
+    for (const Json& more : json["more_warnings"]) {
+      const std::optional<Sentence> sentence = SentenceFromJson(more);
+      if (!sentence) return std::nullopt;
+      placement.warnings.push_back(*sentence);
+    }
+  }
   placement.missing = json["missing"];
   placement.largest = json["largest"];
   for (const auto& [reason, count] : json["set_aside"].items()) {
@@ -154,7 +161,11 @@ Result<Json> PlacementsToJson(const std::vector<Placement>& placements) {
                        {"largest", placement.largest},
                        {"lidar", placement.IsLidar()},
                        {"profiles", placement.profiles.size()},
-                       {"warning", ToJson(placement.warning)}});
+                       {"warning", ToJson(placement.warnings.empty() ? Sentence{} : placement.warnings.front())}});
+    for (size_t k = 1; k < placement.warnings.size(); ++k)
+      targets.back()["more_warnings"].push_back(ToJson(placement.warnings[k]));
+    if (placement.timed)
+      for (const Profile& profile : placement.profiles) targets.back()["times"].push_back(profile.time);
     Write(placement, &numbers);
   }
   const std::string segments = ToBase64(numbers.bytes());
@@ -183,6 +194,17 @@ Result<std::vector<Placement>> PlacementsFromJson(const Json& data, const std::s
       return damaged("target " + std::to_string(placements.size() + 1) +
                      ": expected name, missing, set_aside, largest, lidar, profiles and warning");
     Read(target["lidar"], target["profiles"], &numbers, &*placement);
+    for (size_t k = 0; k < placement->profiles.size(); ++k) placement->profiles[k].time = static_cast<double>(k);
+    if (target.contains("times") && numbers.sound()) {
+      const Json& times = target["times"];
+      placement->timed = times.is_array() && times.size() == placement->profiles.size();
+      for (size_t k = 0; k < times.size() && placement->timed; ++k) {
+        placement->timed = times[k].is_number();
+        if (placement->timed) placement->profiles[k].time = times[k];
+      }
+      if (!placement->timed)
+        return damaged("target " + placement->name + ": times: expected a number for each profile");
+    }
     placements.push_back(std::move(*placement));
   }
   if (!numbers.AllTaken()) return damaged("segments: found other numbers than data: layout says");

@@ -16,8 +16,8 @@ constexpr double kImplausibleOffset_mm = 20'000;
 constexpr double kMostNodesDeclared = 1e9;
 
 const std::map<std::string, Dimension, std::less<>> kColumns = {
-    {"angle", Dimension::kAngle}, {"bearing", Dimension::kAngle}, {"y", Dimension::kLength},
-    {"z", Dimension::kLength},    {"range", Dimension::kLength},  {"profile", Dimension::kNone}};
+    {"angle", Dimension::kAngle},  {"bearing", Dimension::kAngle}, {"y", Dimension::kLength}, {"z", Dimension::kLength},
+    {"range", Dimension::kLength}, {"profile", Dimension::kNone},  {"time", Dimension::kNone}};
 
 Dimension DimensionOf(std::string_view column) {
   const auto found = kColumns.find(column);
@@ -278,7 +278,14 @@ Result<Declaration> Declare(const Dataset& dataset, Model* model) {
   const std::string rotation = top.Text("rotation");
   if (rotation != "clockwise" && rotation != "counterclockwise")
     top.Fail("rotation", "expected clockwise or counterclockwise, seen from +Z of the table");
-  result.sense = rotation == "counterclockwise" ? -1 : 1;
+  result.senses.angle = rotation == "counterclockwise" ? -1 : 1;
+  if (top.Has("depth")) {
+    const std::string depth = top.Text("depth");
+    if (depth != "away" && depth != "towards")
+      top.Fail("depth", "expected away or towards: which way the sensor's depth grows");
+    result.senses.depth = depth == "towards" ? -1 : 1;
+    result.depth_declared = true;
+  }
   result.search = ReadSearch(top, dataset.units);
   std::set<std::string> names;
   for (YamlMap target : top.Maps("targets")) {

@@ -24,10 +24,16 @@ struct ScanDeclaration {  // one target: one placement of the plate
   std::vector<KeepInterval> keep;
 };
 
+struct Senses {
+  double angle = 1;  // alpha = angle * reading: clockwise seen from +Z is positive
+  double depth = 1;  // y = depth * reading: growing away from the sensor
+};
+
 struct Declaration {
   Dataset dataset;
-  double sense = 1;  // alpha = sense * reading: clockwise seen from +Z is positive
-  GridBox search;    // of M and N, mm
+  Senses senses;
+  bool depth_declared = false;  // which way it grows
+  GridBox search;               // of M and N, mm
   std::vector<ScanDeclaration> scans;
   std::optional<double> line_correlation;  // points; declared
   std::vector<Sentence> warnings;          // worth knowing

@@ -18,7 +18,8 @@ namespace {
 constexpr double kOff = 6;  // robust standard deviations: two points in 1e9 of a normal distribution
 constexpr size_t kFewestPoints = 5;
 constexpr double kRounding = 1e-7;  // of a profile's extent: what is nearer to its line is on it
-const char kReasonOffLine[] = "off the line of their profile", kReasonOffPlane[] = "off the plane of their target";
+const char kReasonOffLine[] = "off the line of their profile", kReasonOffPlane[] = "off the plane of their target",
+           kReasonCopied[] = "copies of others";
 
 constexpr double kOffPlane = 6;  // median distances of profiles
 constexpr size_t kSubsample = 48, kFewestProfiles = 6;
@@ -102,6 +103,7 @@ std::vector<Profile> Compressed(const std::vector<RawProfile>& profiles) {
   InParallel(profiles.size(), 0, [&](size_t k) {
     const RawProfile& profile = profiles[k];
     compressed[k] = CompressProfile(profile.alpha, profile.y, profile.z, profile.range);
+    compressed[k].time = profile.time;
   });
   return compressed;
 }
@@ -291,8 +293,10 @@ PointsOnPlane SetAsideSegments(const RawScan& scan, const RobustPlane& plane, co
     }
     left.off += off;
     if (off == 0) left.compressed.push_back(profile);
-    else if (!kept.empty())
+    else if (!kept.empty()) {
       left.compressed.push_back(MakeProfile(profile.alpha, profile.count - off, std::move(kept), std::nullopt));
+      left.compressed.back().time = profile.time;
+    }
   }
   return left;
 }
@@ -385,6 +389,7 @@ PointsOnPlane SetAsideOffPlane(const RawScan& scan, const System& system) {
     Remove(off, &rest);
     if (rest.y.empty()) continue;
     left.compressed.push_back(CompressProfile(rest.alpha, rest.y, rest.z, rest.range));
+    left.compressed.back().time = rest.time;
     left.changed.push_back(std::move(rest));
     left.profiles.push_back(&left.changed.back());
   }
@@ -395,10 +400,14 @@ Placement MakePlacement(const RawScan& scan, const PointsOnPlane& points) {
   Placement placement;
   placement.name = scan.name;
   placement.missing = scan.missing;
-  placement.warning = scan.warning;
+  placement.warnings = scan.warnings;
+  placement.timed = scan.timed;
+  if (scan.copied > 0) placement.set_aside[kReasonCopied] = scan.copied;
   if (scan.off_line > 0) placement.set_aside[kReasonOffLine] = scan.off_line;
   if (points.off > 0) placement.set_aside[kReasonOffPlane] = points.off;
   placement.profiles = points.compressed;
+  for (size_t k = 0; k < placement.profiles.size() && !scan.timed; ++k)
+    placement.profiles[k].time = static_cast<double>(k);
   placement.largest = scan.seen.largest;
   for (const RawProfile* profile : points.profiles) placement.largest = std::max(placement.largest, Largest(*profile));
   return placement;

@@ -41,8 +41,10 @@ class Gatherer {
  public:
   explicit Gatherer(const std::filesystem::path& path) : path_(path) {}
 
-  Result<void> Add(double alpha, const double* key, double y, double z, const double* range) {
+  Result<void> Add(double alpha, const double* key, const double* time, double y, double z, const double* range) {
+    const size_t before = begun_;
     RawProfile* profile = key ? ByKey(*key, alpha) : ByAngle(alpha);
+    if (begun_ > before) profile->time = time ? *time : static_cast<double>(before);
     by_key_ = key != nullptr;
     if (profile->alpha != alpha) {
       return Error{fmt::format("{}: profile {:g}: found angles {:.9g} and {:.9g} rad, expected one angle a profile",
@@ -77,7 +79,7 @@ class Gatherer {
   RawProfile* ByAngle(double alpha) {
     if (profiles_.empty() || profiles_.back().alpha != alpha) {
       const size_t like_the_last = profiles_.empty() ? 0 : profiles_.back().y.size();
-      profiles_.push_back({static_cast<double>(begun_++), alpha, {}, {}, {}});
+      profiles_.push_back({static_cast<double>(begun_++), alpha, {}, {}, {}, 0});
       profiles_.back().y.reserve(like_the_last);
       profiles_.back().z.reserve(like_the_last);
     }
@@ -86,7 +88,8 @@ class Gatherer {
   RawProfile* ByKey(double key, double alpha) {
     if (!profiles_.empty() && profiles_[last_].key == key) return &profiles_[last_];
     const auto [found, fresh] = index_.try_emplace(key, profiles_.size());
-    if (fresh) profiles_.push_back({key, alpha, {}, {}, {}});
+    if (fresh) profiles_.push_back({key, alpha, {}, {}, {}, 0});
+    begun_ += fresh;
     last_ = found->second;
     return &profiles_[last_];
   }
@@ -122,9 +125,9 @@ void OrderAlongLine(RawProfile* profile) {
     for (size_t i = 0; i < (from.*column).size(); ++i) (profile->*column)[i] = (from.*column)[order[i]];
 }
 
-void ToSensor(double sense, const ScanBatch& batch, SensorColumns* points) {
+void ToSensor(const Senses& senses, const ScanBatch& batch, SensorColumns* points) {
   points->alpha = batch.columns[batch.Find("angle")];
-  for (double& alpha : points->alpha) alpha *= sense;
+  for (double& alpha : points->alpha) alpha *= senses.angle;
   const int y = batch.Find("y"), z = batch.Find("z"), bearing = batch.Find("bearing"), range = batch.Find("range");
   if (bearing >= 0 && range >= 0) {
     points->range = batch.columns[range];
@@ -137,10 +140,37 @@ void ToSensor(double sense, const ScanBatch& batch, SensorColumns* points) {
   } else {  // the reader has made sure of them
     points->y = batch.columns[y];
     points->z = batch.columns[z];
+    for (size_t i = 0; i < batch.size() && senses.depth < 0; ++i) points->y[i] = -points->y[i];
   }
 }
 
-Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense, const std::function<void(double)>& progress) {
+namespace {
+
+// The profiles that were gathered, to the points that are kept of them.
+Result<void> TakeIn(std::vector<RawProfile> profiles, const ScanDeclaration& declaration, const Gatherer& gatherer,
+                    double depth, RawScan* scan) {
+  const bool first = scan->compressed.empty();
+  scan->profiles = std::move(profiles);
+  if (scan->profiles.empty()) return {};
+  if (first)
+    if (const std::optional<double> value = RepeatedValue(scan->profiles))
+      return Error{
+          fmt::format("{}: target {}: {} = {:.9g} stands in most profiles, apart from all other values: where a sensor "
+                      "sees nothing it "
+                      "writes such a number; declare invalid: {:.9g}, or if it was measured, leave those points out",
+                      declaration.format.path.string(), declaration.name, gatherer.ranged() ? "range" : "y",
+                      *value * depth / declaration.format.units.length_in_mm,
+                      *value * depth / declaration.format.units.length_in_mm)};
+  if (!gatherer.by_key()) SplitAtRoundedAngles(scan);
+  scan->lines += static_cast<double>(scan->profiles.size());
+  Clean(scan);
+  return {};
+}
+
+}  // namespace
+
+Result<RawScan> ReadScan(const ScanDeclaration& scan, const Senses& senses,
+                         const std::function<void(double)>& progress) {
   SCANCAL_ASSIGN_OR_RETURN(const auto reader, ScanReader::Open(scan.format));
   Gatherer gatherer(scan.format.path);
   ScanBatch batch;
@@ -150,19 +180,19 @@ Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense, const std::f
   for (;;) {
     SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
     if (!more) break;
-    ToSensor(sense, batch, &points);
+    ToSensor(senses, batch, &points);
     SCANCAL_ASSIGN_OR_RETURN(const std::vector<char> kept, Kept(scan, batch, points));
-    const int profile = batch.Find("profile");
+    const int profile = batch.Find("profile"), time = batch.Find("time");
+    result.timed |= time >= 0;
     for (size_t i = 0; i < batch.size(); ++i) {
       if (!kept[i]) continue;
       SCANCAL_RETURN_IF_ERROR(gatherer.Add(points.alpha[i], profile >= 0 ? &batch.columns[profile][i] : nullptr,
-                                           points.y[i], points.z[i],
+                                           time >= 0 ? &batch.columns[time][i] : nullptr, points.y[i], points.z[i],
                                            points.range.empty() ? nullptr : &points.range[i]));
     }
     if (gatherer.points() > kHeldPoints && !gatherer.by_key() && !gatherer.ranged()) {
       result.holds_points = false;
-      result.profiles = gatherer.TakeComplete();
-      if (!result.profiles.empty()) Clean(&result);
+      SCANCAL_RETURN_IF_ERROR(TakeIn(gatherer.TakeComplete(), scan, gatherer, senses.depth, &result));
     }
     progress(static_cast<double>(reader->bytes_read()) /
              static_cast<double>(std::max<int64_t>(1, reader->bytes_total())));
@@ -170,9 +200,9 @@ Result<RawScan> ReadScan(const ScanDeclaration& scan, double sense, const std::f
   if (gatherer.points() == 0)
     return Error{scan.format.path.string() + ": target " + scan.name + ": no point is left; widen its keep: intervals"};
   result.missing = static_cast<double>(reader->missing());
-  result.profiles = gatherer.Take();
-  Clean(&result);
-  if (!gatherer.by_key() && LooksShuffled(result.compressed)) result.warning = Say(kLooksShuffled, scan.name);
+  SCANCAL_RETURN_IF_ERROR(TakeIn(gatherer.Take(), scan, gatherer, senses.depth, &result));
+  NoteRoundedAngles(&result);
+  if (!gatherer.by_key() && LooksShuffled(result.compressed)) result.warnings.push_back(Say(kLooksShuffled, scan.name));
   return result;
 }
 

@@ -71,7 +71,7 @@ Result<std::vector<RawScan>> ReadScans(const Declaration& declaration) {
   std::mutex one_at_a_time;
   std::vector<double> done(count);
   InParallel(count, 0, [&](size_t k) {
-    read[k] = ReadScan(declaration.scans[k], declaration.sense, [&](double fraction) {
+    read[k] = ReadScan(declaration.scans[k], declaration.senses, [&](double fraction) {
       const std::lock_guard lock(one_at_a_time);
       done[k] = fraction / static_cast<double>(count);
       progress.Show(std::accumulate(done.begin(), done.end(), 0.0));
@@ -81,6 +81,8 @@ Result<std::vector<RawScan>> ReadScans(const Declaration& declaration) {
   for (auto& each : read) {
     SCANCAL_ASSIGN_OR_RETURN(scans.emplace_back(), std::move(*each));
   }
+  Unwind(&scans);
+  DropCopies(&scans);
   return scans;
 }
 
@@ -167,6 +169,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   }
   if (plane) result.warnings.push_back(Say(kPlaneIsBiased));
   Judge(box, placements_, SearchKnowing(found, start), fit, &result);
+  JudgeMirrorImage(declaration_.depth_declared, box, placements_, &result);
   AddVolume(placements_, &result);
   if (choice.figures) AddSurface(box, start.storeys, StoreysOf(placements_, found), &result);
   AddScene(placements_, &result);
@@ -178,7 +181,7 @@ Result<std::unique_ptr<scancal::Scanner>> Load(const Dataset& dataset) {
   SCANCAL_ASSIGN_OR_RETURN(Declaration declaration, Declare(dataset, &model));
   SCANCAL_ASSIGN_OR_RETURN(const std::vector<RawScan> scans, ReadScans(declaration));
   for (const RawScan& scan : scans)
-    if (!scan.warning.empty()) declaration.warnings.push_back(scan.warning);
+    declaration.warnings.insert(declaration.warnings.end(), scan.warnings.begin(), scan.warnings.end());
   SCANCAL_ASSIGN_OR_RETURN(std::unique_ptr<Scanner> scanner, Compress(declaration, model, scans));
   return std::unique_ptr<scancal::Scanner>(std::move(scanner));
 }
@@ -228,7 +231,7 @@ std::string Scanner::Describe() const {
       "{}, table seen to turn {} from +Z; {} targets, {} profiles, {} points used, {} missing, {} set aside; M "
       "searched "
       "from {:g} to {:g} mm, N from {:g} to {:g} mm.",
-      Opening(declaration_.dataset, "turntable"), declaration_.sense > 0 ? "clockwise" : "counterclockwise",
+      Opening(declaration_.dataset, "turntable"), declaration_.senses.angle > 0 ? "clockwise" : "counterclockwise",
       placements_.size(), profiles, points, missing, off, box.lower[0], box.upper[0], box.lower[1], box.upper[1]);
 }
 
@@ -260,12 +263,16 @@ Result<std::unique_ptr<scancal::Scanner>> Reload(const Dataset& dataset, const J
   Model model(Model::Residuals::kDepth);
   SCANCAL_ASSIGN_OR_RETURN(Declaration declaration, Declare(dataset, &model));
   SCANCAL_ASSIGN_OR_RETURN(std::vector<Placement> placements, PlacementsFromJson(data, file));
-  const bool as_declared =
-      std::equal(placements.begin(), placements.end(), declaration.scans.begin(), declaration.scans.end(),
-                 [](const Placement& placement, const ScanDeclaration& scan) { return placement.name == scan.name; });
+  auto scan = declaration.scans.begin();  // a copy of another target is not among the placements
+  for (const Placement& placement : placements) {
+    const auto is_its_own = [&](const ScanDeclaration& each) { return each.name == placement.name; };
+    scan = std::find_if(scan, declaration.scans.end(), is_its_own);
+    if (scan == declaration.scans.end()) break;
+  }
+  const bool as_declared = scan != declaration.scans.end() && !placements.empty();
   if (!as_declared) return Error{file + ": data: expected the targets that data: dataset declares, in their order"};
   for (const Placement& placement : placements)
-    if (!placement.warning.empty()) declaration.warnings.push_back(placement.warning);
+    declaration.warnings.insert(declaration.warnings.end(), placement.warnings.begin(), placement.warnings.end());
   declaration.scans.clear();  // nothing is left to be read, Files() is dataset.yaml alone
   SCANCAL_RETURN_IF_ERROR(CheckPlausible(placements, dataset.units));
   return std::unique_ptr<scancal::Scanner>(

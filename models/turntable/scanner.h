@@ -89,6 +89,10 @@ Result<void> CheckDetermined(const JointFit& fit);
 void Judge(const GridBox& box, const std::vector<Placement>& placements, const GridResult& grid, const JointFit& fit,
            Calibration* calibration);
 
+// Where the search holds (-M, -N), too, and nobody has said which way depth grows.
+void JudgeMirrorImage(bool depth_declared, const GridBox& box, const std::vector<Placement>& placements,
+                      Calibration* calibration);
+
 // From clean points in memory: sets aside what is off each plane, and compresses the rest.
 Result<std::unique_ptr<Scanner>> Compress(const Declaration& declaration, const Model& model,
                                           const std::vector<RawScan>& scans);

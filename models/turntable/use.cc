@@ -235,7 +235,7 @@ Result<int64_t> Transform(const Dataset& dataset, const Calibration& calibration
     for (;;) {
       SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
       if (!more) break;
-      ToSensor(declaration.sense, batch, &sensor);
+      ToSensor(declaration.senses, batch, &sensor);
       transformed.clear();
       for (size_t i = 0; i < batch.size(); ++i) {
         const Eigen::Vector3d p = system.Point(sensor.alpha[i], sensor.y[i], sensor.z[i]);

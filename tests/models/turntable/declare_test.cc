@@ -53,7 +53,7 @@ class DeclarationTest : public ::testing::Test {
 TEST_F(DeclarationTest, TheShortestDataSet) {
   const auto declaration = DeclareWith("");
   ASSERT_TRUE(declaration.ok()) << declaration.error().message;
-  EXPECT_EQ(declaration->sense, 1);
+  EXPECT_EQ(declaration->senses.angle, 1);
   EXPECT_THAT(declaration->search.lower, ElementsAre(110, 395));
   EXPECT_THAT(declaration->search.upper, ElementsAre(130, 425));
   EXPECT_EQ(declaration->search.step, 1);
@@ -74,7 +74,7 @@ TEST_F(DeclarationTest, UnitsApplyToEveryNumber) {
       "influences: {noise_y: 5e-5, encoder_jitter: 0.01}\n"
       "targets: [{name: a, scan: a.csv, keep: {angle: [-10, 20], z: [-0.1, 0.2], speed: [1, 2], lines: [5, 9]}}]\n");
   ASSERT_TRUE(declaration.ok()) << declaration.error().message;
-  EXPECT_EQ(declaration->sense, -1);
+  EXPECT_EQ(declaration->senses.angle, -1);
   EXPECT_NEAR(declaration->search.lower[0], 110, 1e-9);
   EXPECT_NEAR(declaration->search.upper[1], 400, 1e-9);
   EXPECT_NEAR(declaration->search.step, 1, 1e-12);

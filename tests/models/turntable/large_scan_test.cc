@@ -109,7 +109,7 @@ TEST(LargeScan, IsReadWithoutHoldingItsPoints) {
   Model model(Model::Residuals::kDepth);
   const auto declaration = Declare(*dataset, &model);
   ASSERT_TRUE(declaration.ok()) << declaration.error().message;
-  const auto scan = ReadScan(declaration->scans[0], declaration->sense, [](double) {});
+  const auto scan = ReadScan(declaration->scans[0], declaration->senses, [](double) {});
   ASSERT_TRUE(scan.ok()) << scan.error().message;
   EXPECT_FALSE(scan->holds_points);
   EXPECT_TRUE(scan->profiles.empty());
