@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <vector>
+#include "apps/recheck.h"
 #include "models/models.h"
 #include "models/scanner.h"
 
@@ -20,9 +21,9 @@ Result<void> CheckTrials(const std::string& flag, int trials);
 Result<std::unique_ptr<Scanner>> LoadAndEcho(const std::vector<std::string>& arguments);
 // What was read with its hashes; behind a calibration.json what it was made from, as it says.
 Result<std::vector<HashedFile>> InputsOf(const Scanner& scanner);
-// What a calibration.json leaves out and its page draws (FiguresToJson), from its compressed data. Null of a file that
-// holds it, as those of older versions do, or that is none: the page says why.
-Result<Json> FiguresOf(const std::filesystem::path& calibration);
+// What the page needs besides a calibration.json: the tables of its figures (FiguresToJson), from its compressed data,
+// and the doubts about the file among its warnings.
+Json FiguresOf(const Rechecked& result);
 Result<Dataset> ReadOnlyArgument(const std::vector<std::string>& arguments);
 
 }  // namespace scancal

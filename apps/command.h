@@ -20,7 +20,7 @@ struct Command {
 };
 
 extern const Command kRefineCommand, kMonteCarloCommand, kCompareCommand, kSimulateCommand, kTransformCommand,
-    kPropagateCommand, kReportCommand, kSelftestCommand;
+    kPropagateCommand, kReportCommand, kRecheckCommand, kSelftestCommand;
 
 // Exit codes.
 inline constexpr int kTrusted = 0, kBadInput = 1, kUnreliable = 2;

@@ -38,7 +38,8 @@ const Command kMonteCarloCommand = {"montecarlo",
                                      {"trials"},
                                      {"seed", "of all draws: the same seed gives the same digits"},
                                      {"digits"},
-                                     {"threads"}},
+                                     {"threads"},
+                                     {"sign"}},
                                     &RunMonteCarlo};
 
 }  // namespace scancal

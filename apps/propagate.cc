@@ -2,9 +2,9 @@
 #include <gflags/gflags.h>
 #include <cstdio>
 #include "apps/command.h"
+#include "apps/recheck.h"
 #include "io/output_file.h"
 #include "models/models.h"
-#include "report/calibration_json.h"
 #include "report/text.h"
 
 DECLARE_string(out);
@@ -26,9 +26,10 @@ bool KeepEveryPoint(const char*, const std::string& value) {
   return true;
 }
 
-Result<bool> Propagated(const std::string& file) {
+Result<int> Propagated(const std::string& file) {
   SCANCAL_ASSIGN_OR_RETURN(const Units units, ParseUnits(FLAGS_units));
-  SCANCAL_ASSIGN_OR_RETURN(const Calibration calibration, ReadCalibration(file));
+  SCANCAL_ASSIGN_OR_RETURN(const Rechecked checked, RecheckForUse(file));
+  const Calibration& calibration = checked.found;
   SCANCAL_ASSIGN_OR_RETURN(const ScannerKind* kind, FindScannerKind(calibration.model, file + ": model"));
   SCANCAL_ASSIGN_OR_RETURN(const Propagation propagation,
                            kind->Propagate(calibration, {TypedPoints(), FLAGS_points_file, units}, FLAGS_distance));
@@ -36,25 +37,24 @@ Result<bool> Propagated(const std::string& file) {
   std::printf("%s", ToText(propagation).c_str());
   for (const std::string& warning : propagation.warnings)
     std::fprintf(stderr, "scancal: warning: %s\n", warning.c_str());
-  if (!calibration.ok()) std::fprintf(stderr, "scancal: warning: %s has status unreliable\n", file.c_str());
-  return calibration.ok();
+  return WarnOf(checked, file);
 }
 
 int RunPropagate(const std::vector<std::string>& arguments) {
   if (arguments.size() != 1)
     return Complain("found " + std::to_string(arguments.size()) + " arguments, expected one: a calibration.json");
-  const Result<bool> trusted = Propagated(arguments[0]);
-  if (!trusted.ok()) return Complain(trusted.error().message);
-  return *trusted ? kTrusted : kUnreliable;
+  const Result<int> code = Propagated(arguments[0]);
+  return code.ok() ? *code : Complain(code.error().message);
 }
 
 }  // namespace
 
-const Command kPropagateCommand = {"propagate",
-                                   "CALIBRATION",
-                                   "uncertainty of points and distances that the calibrated scanner measures",
-                                   {{"point"}, {"points_file"}, {"units"}, {"distance"}, {"out", "CSV file to write"}},
-                                   &RunPropagate};
+const Command kPropagateCommand = {
+    "propagate",
+    "CALIBRATION",
+    "uncertainty of points and distances that the calibrated scanner measures",
+    {{"point"}, {"points_file"}, {"units"}, {"distance"}, {"out", "CSV file to write"}, {"unreliable"}, {"key"}},
+    &RunPropagate};
 
 }  // namespace scancal
 

@@ -38,7 +38,8 @@ const Command kRefineCommand = {
      {"residual"},
      {"weights"},
      {"max_iterations"},
-     {"montecarlo"}},
+     {"montecarlo"},
+     {"sign"}},
     &RunRefine};
 
 }  // namespace scancal

@@ -17,16 +17,25 @@ DEFINE_string(language, "en", "of the page: en or de");
 namespace scancal {
 namespace {
 
-Result<void> WriteFigures(const std::filesystem::path& calibration, const Json& figures) {
-  std::error_code none;
-  if (std::filesystem::equivalent(calibration, FLAGS_figures, none))
-    return Error{"--figures: " + FLAGS_figures + " is the calibration itself, expected another file"};
-  if (!figures.is_null()) return WriteJson(FLAGS_figures, figures);
-  SCANCAL_ASSIGN_OR_RETURN(const Json json, ReadJson(calibration));  // as older versions kept them
-  Json kept = Json::object();
+Result<void> WriteFigures(const Rechecked& result, const Json& figures) {
+  Json kept = Json::object();  // without data: as older versions kept them
   for (const char* key : {"compare", "surface", "residuals", "messages"})
-    if (json.contains(key)) kept[key] = json[key];
-  return WriteJson(FLAGS_figures, kept);
+    if (result.file.contains(key)) kept[key] = result.file[key];
+  return WriteJson(FLAGS_figures, result.again ? figures : kept);
+}
+
+// A certificate is of what anybody can compute again.
+Result<Json> CheckedFigures(const Rechecked& result, const PageChoice& choice) {
+  for (const Sentence& doubt : result.doubts) {
+    if (!choice.dcc.empty()) return Error{"--dcc: no certificate: " + doubt.english};
+    std::fprintf(stderr, "scancal: warning: %s\n", doubt.english.c_str());
+  }
+  Json figures = FiguresOf(result);
+  if (choice.previous.empty()) return figures;
+  SCANCAL_ASSIGN_OR_RETURN(const Rechecked previous, Recheck(choice.previous, /*monte_carlo=*/false));
+  for (const Sentence& doubt : previous.doubts)
+    std::fprintf(stderr, "scancal: warning: %s: %s\n", choice.previous.c_str(), doubt.english.c_str());
+  return figures;
 }
 
 int RunReport(const std::vector<std::string>& arguments) {
@@ -43,13 +52,18 @@ int RunReport(const std::vector<std::string>& arguments) {
     if (!FLAGS_figures.empty() && file.lexically_normal() == std::filesystem::path(FLAGS_figures).lexically_normal())
       return Complain("--figures: " + FLAGS_figures +
                       " is written by the same command; give each file a name of its own");
-  const Result<Json> figures = FiguresOf(calibration);
+  std::error_code none;
+  if (std::filesystem::equivalent(calibration, FLAGS_figures, none))
+    return Complain("--figures: " + FLAGS_figures + " is the calibration itself, expected another file");
+  const Result<Rechecked> result = Recheck(calibration, /*monte_carlo=*/true);
+  if (!result.ok()) return Complain(result.error().message);
+  const Result<Json> figures = CheckedFigures(*result, choice);
   if (!figures.ok()) return Complain(figures.error().message);
   const Result<bool> written = WritePage(calibration, *figures, choice);
   if (!written.ok()) return Complain(written.error().message);
   if (!*written) return kBadInput;
   if (!FLAGS_figures.empty()) {
-    const Result<void> numbers = WriteFigures(calibration, *figures);
+    const Result<void> numbers = WriteFigures(*result, *figures);
     if (!numbers.ok()) return Complain(numbers.error().message);
   }
   for (const std::filesystem::path& file : {choice.html, choice.pdf, choice.dcc, {FLAGS_figures}})
@@ -77,7 +91,8 @@ const Command kReportCommand = {
      {"dcc"},
      {"figures"},
      {"previous"},
-     {"language"}},
+     {"language"},
+     {"key"}},
     &RunReport};
 
 }  // namespace scancal

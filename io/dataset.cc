@@ -7,6 +7,8 @@ namespace scancal {
 namespace {
 
 constexpr int kVersion = 1;
+constexpr double kLargest = 1e6;                    // u
+constexpr int64_t kLargestFile = int64_t{4} << 20;  // bytes; it declares, and has no data
 const std::vector<std::string>& Roles() {
   static const std::vector<std::string> roles = {"estimate", "consider", "hold"};
   return roles;
@@ -65,6 +67,11 @@ std::string FindRole(YamlMap& yaml) {
   return "";
 }
 
+// Larger than any in any unit; what a model can say more exactly, it says.
+void CheckSize(YamlMap& yaml, const std::string& key, double u) {
+  if (u > kLargest) yaml.Fail(key, "expected a standard uncertainty in the declared unit, below 1e6");
+}
+
 // M: {estimate: 123, u: 0.5}
 ParameterSetting ReadRoleWithValue(YamlMap yaml, const std::string& name) {
   ParameterSetting setting{.name = name, .role = FindRole(yaml), .value = {}};
@@ -78,6 +85,9 @@ ParameterSetting ReadRoleWithValue(YamlMap yaml, const std::string& name) {
   setting.u = consider ? yaml.Number("u") : yaml.Number("u", 0);
   if (setting.u < 0) yaml.Fail("u", "expected a standard uncertainty, not negative");
   if (setting.u == 0 && consider) yaml.Fail("u", "expected more than 0; without uncertainty it is {hold: ...}");
+  if (setting.u == 0 && !consider && yaml.Has("u"))
+    yaml.Fail("u", "expected more than 0; without a prior it is " + name + ": estimate");
+  CheckSize(yaml, "u", setting.u);
   return setting;
 }
 
@@ -100,6 +110,7 @@ InfluenceSetting ReadInfluence(YamlMap& influences, const std::string& name) {
   } else if (influences.IsNumber(name)) {
     setting.u = influences.Number(name);
     if (setting.u < 0) influences.Fail(name, kExpected);
+    CheckSize(influences, name, setting.u);
   } else {
     setting.role = influences.Text(name);
     if (setting.role == "true") setting.role = "yes";
@@ -121,7 +132,7 @@ std::vector<InfluenceSetting> ReadInfluences(YamlMap yaml) {
 Result<Dataset> ReadDataset(const std::filesystem::path& folder) {
   std::error_code ignored;
   const std::filesystem::path file = std::filesystem::is_directory(folder, ignored) ? folder / "dataset.yaml" : folder;
-  SCANCAL_ASSIGN_OR_RETURN(std::string text, ReadText(file));
+  SCANCAL_ASSIGN_OR_RETURN(std::string text, ReadText(file, kLargestFile));
   return ParseDataset(std::move(text), file, file.string());
 }
 

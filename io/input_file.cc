@@ -1,8 +1,10 @@
 #include "io/input_file.h"
 #include <fcntl.h>
 #include <openssl/evp.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <memory>
@@ -14,6 +16,7 @@ namespace scancal {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr int64_t kLongestPipe = int64_t{1} << 36;  // bytes
 
 std::vector<std::string> NamesIn(const fs::path& folder) {
   std::vector<std::string> names;
@@ -60,15 +63,30 @@ Result<std::string> Finish(const Context& context, bool ok, const std::string& n
 }  // namespace
 
 Result<InputFile> InputFile::Open(const fs::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe has no writer yet
   if (descriptor < 0) return CannotOpen(path, errno);
   InputFile file(path.string(), descriptor);
   struct stat status = {};
   if (::fstat(descriptor, &status) != 0) return CannotOpen(path, errno);
   if (S_ISDIR(status.st_mode)) return Error{path.string() + ": found a folder, expected a file"};
+  if (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode) || S_ISSOCK(status.st_mode))
+    return Error{path.string() + ": found a device, expected a file"};
   file.regular_ = S_ISREG(status.st_mode);
+  if (!file.regular_) SCANCAL_RETURN_IF_ERROR(file.AwaitWriter());
   file.size_ = file.regular_ ? status.st_size : 0;
   return file;
+}
+
+// Until there is something to read, or the writer has gone again.
+Result<void> InputFile::AwaitWriter() const {
+  constexpr int kPatience_ms = 10'000;
+  pollfd pipe = {descriptor_, POLLIN, 0};
+  int ready = ::poll(&pipe, 1, kPatience_ms);
+  while (ready < 0 && errno == EINTR) ready = ::poll(&pipe, 1, kPatience_ms);
+  if (ready == 0) return Error{name_ + ": found a pipe into which nobody writes, expected a file"};
+  if (::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) & ~O_NONBLOCK) < 0)
+    return Error{name_ + ": cannot be read: " + SystemMessage(errno)};
+  return {};
 }
 
 InputFile::InputFile(InputFile&& other) noexcept { *this = std::move(other); }
@@ -78,6 +96,7 @@ InputFile& InputFile::operator=(InputFile&& other) noexcept {
   std::swap(descriptor_, other.descriptor_);
   std::swap(size_, other.size_);
   std::swap(regular_, other.regular_);
+  std::swap(piped_, other.piped_);
   return *this;
 }
 
@@ -91,6 +110,8 @@ Result<size_t> InputFile::Read(char* buffer, size_t size) {
     const ssize_t count = ::read(descriptor_, buffer + filled, size - filled);
     if (count == 0) break;
     if (count < 0 && errno == EINTR) continue;
+    piped_ += regular_ ? 0 : std::max<int64_t>(count, 0);
+    if (piped_ > kLongestPipe) return Error{name_ + ": found a pipe without an end, expected a file"};
     if (count < 0) return Error{name_ + ": cannot be read: " + SystemMessage(errno)};
     filled += static_cast<size_t>(count);
   }
@@ -102,7 +123,7 @@ Result<void> InputFile::Skip(int64_t bytes) {
   return {};
 }
 
-Result<std::string> ReadText(const fs::path& path) {
+Result<std::string> ReadText(const fs::path& path, int64_t most) {
   SCANCAL_ASSIGN_OR_RETURN(InputFile file, InputFile::Open(path));
   constexpr size_t kBlock = size_t{1} << 16;
   std::string text;
@@ -110,6 +131,8 @@ Result<std::string> ReadText(const fs::path& path) {
     text.resize(filled + kBlock);
     SCANCAL_ASSIGN_OR_RETURN(const size_t count, file.Read(text.data() + filled, kBlock));
     filled += count;
+    if (static_cast<int64_t>(filled) > most)
+      return Error{path.string() + ": found more than " + std::to_string(most >> 20) + " MB, expected a small file"};
     if (count < kBlock) {
       text.resize(filled);
       return text;

@@ -10,7 +10,8 @@ namespace scancal {
 
 class InputFile {
  public:
-  static Result<InputFile> Open(const std::filesystem::path& path);  // missing, a directory, not readable: errors
+  // Missing, a directory, a device, not readable: errors. A pipe will do if somebody writes into it.
+  static Result<InputFile> Open(const std::filesystem::path& path);
   InputFile(InputFile&& other) noexcept;
   InputFile& operator=(InputFile&& other) noexcept;
   ~InputFile();
@@ -24,13 +25,16 @@ class InputFile {
 
  private:
   InputFile(std::string name, int descriptor) : name_(std::move(name)), descriptor_(descriptor) {}
+  Result<void> AwaitWriter() const;
   std::string name_;
   int descriptor_ = -1;
   int64_t size_ = 0;
   bool regular_ = false;
+  int64_t piped_ = 0;  // bytes, of a pipe
 };
 
-Result<std::string> ReadText(const std::filesystem::path& path);  // the whole file; for small ones
+// The whole file, of at most so many bytes.
+Result<std::string> ReadText(const std::filesystem::path& path, int64_t most = int64_t{1} << 30);
 
 // 64 lower-case hexadecimal digits.
 Result<std::string> Sha256(const std::filesystem::path& path);

@@ -1,6 +1,7 @@
 #include "io/scan.h"
 #include <algorithm>
 #include <cctype>
+#include <cstring>
 #include <utility>
 #include "io/message.h"
 
@@ -18,6 +19,25 @@ std::string PossibleNames(const ScanColumn& wanted) {
       break;
   }
   return "'" + wanted.name + "'";
+}
+
+// What a file that is no table begins with is nobody's business.
+std::vector<std::string> Masked(std::vector<std::string> names) {
+  constexpr size_t kLongest = 24;
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c >= 0x80 || std::strchr(" _-.%()[]/*^#\"", c) != nullptr;
+  };
+  const bool alone = names.size() == 1;
+  for (std::string& name : names) {
+    const bool is_name = name.size() <= kLongest && std::all_of(name.begin(), name.end(), plain);
+    if (is_name && !alone) continue;
+    if (name.size() > kLongest) name.replace(kLongest, std::string::npos, "...");
+    for (char& c : name)
+      c = std::isdigit(static_cast<unsigned char>(c)) != 0   ? '0'
+          : std::isalpha(static_cast<unsigned char>(c)) != 0 ? 'x'
+                                                             : c;
+  }
+  return names;
 }
 
 bool IsNpy(const std::filesystem::path& path) {
@@ -39,6 +59,7 @@ std::optional<double> MatchColumn(const ScanColumn& wanted, std::string_view fou
 Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const std::vector<std::string>& found,
                                                 const std::string& place) {
   std::vector<ChosenColumn> chosen;
+  const std::string shown = Listed(Masked(found));
   for (const ScanColumn& wanted : format.columns) {
     std::optional<ChosenColumn> match;
     for (size_t i = 0; i < found.size(); ++i) {
@@ -51,9 +72,8 @@ Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const 
       match = ChosenColumn{.name = wanted.name, .index = i, .factor = *factor};
     }
     if (!match && wanted.required) {
-      return Error{
-          place + ": found the columns " + Listed(found) + ", expected also " + PossibleNames(wanted) + wanted.remedy,
-          ErrorKind::kMissingColumns};
+      return Error{place + ": found the columns " + shown + ", expected also " + PossibleNames(wanted) + wanted.remedy,
+                   ErrorKind::kMissingColumns};
     }
     if (match) chosen.push_back(*match);
   }
@@ -64,10 +84,9 @@ Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const 
   if (!format.one_of.empty() && std::none_of(format.one_of.begin(), format.one_of.end(), whole)) {
     std::string groups;
     for (const auto& group : format.one_of) groups += (groups.empty() ? "" : "; or ") + Listed(group);
-    return Error{place + ": found the columns " + Listed(found) + ", expected also " + groups,
-                 ErrorKind::kMissingColumns};
+    return Error{place + ": found the columns " + shown + ", expected also " + groups, ErrorKind::kMissingColumns};
   }
-  if (chosen.empty()) return Error{place + ": found the columns " + Listed(found) + ", none of them is known"};
+  if (chosen.empty()) return Error{place + ": found the columns " + shown + ", none of them is known"};
   return chosen;
 }
 

@@ -223,7 +223,8 @@ Result<YamlMap> YamlMap::Parse(std::string_view text, const std::string& name) {
   SCANCAL_ASSIGN_OR_RETURN(const YAML::Node root, Load(text, name));
   if (root.IsNull()) return Error{name + ": the file is empty, expected \"key: value\" lines"};
   if (!root.IsMap())
-    return Error{PlaceIn(name, root.Mark()) + ": found " + Found(root) + ", expected \"key: value\" lines"};
+    return Error{PlaceIn(name, root.Mark()) + ": found " + (root.IsSequence() ? "a list" : "other text") +
+                 ", expected \"key: value\" lines"};
   auto file = std::make_shared<YamlFile>();
   file->name = name;
   return Open(file, {root, root.Mark(), "", {}, {}});
@@ -306,6 +307,11 @@ std::vector<YamlMap> YamlMap::Maps(std::string_view key) {
   if (!value) return maps;
   if (!value->value.IsSequence()) {
     RememberFound(*file_, *value, "a list of mappings");
+    return maps;
+  }
+  constexpr size_t kMost = 1000;  // targets, links: more are no declaration
+  if (value->value.size() > kMost) {
+    Remember(*file_, *value, "found " + std::to_string(value->value.size()) + " items, expected at most 1000");
     return maps;
   }
   for (const YamlNode& item : ItemsOf(*value)) {

@@ -39,6 +39,14 @@ double UnitFactor(Unit unit, const Units& units) {
   return units.Of(unit == Unit::kMm ? Dimension::kLength : unit == Unit::kRad ? Dimension::kAngle : Dimension::kNone);
 }
 
+Result<void> CheckSize(const Dataset& dataset, const std::string& place, Unit unit, double u) {
+  constexpr double kLargest_mm = 20'000, kLargest_rad = 360 * kDegree, kLargestRatio = 1;
+  const double largest = unit == Unit::kMm ? kLargest_mm : unit == Unit::kRad ? kLargest_rad : kLargestRatio;
+  if (u <= largest) return {};
+  return InFile(dataset, place + fmt::format("found a standard uncertainty of {:.3g} {}, expected at most {:g}", u,
+                                             unit == Unit::kOne ? "of the whole" : Name(unit), largest));
+}
+
 Result<int> SetDeclared(const ParameterSetting& setting, const Dataset& dataset, std::vector<std::string> others,
                         int without_nominal, std::span<Quantity> quantities) {
   const std::string place = "parameters: " + setting.name + ": ";
@@ -56,6 +64,7 @@ Result<int> SetDeclared(const ParameterSetting& setting, const Dataset& dataset,
   const double unit = UnitFactor(quantity.unit, dataset.units);
   quantity.value = setting.value.value_or(0) * unit;
   quantity.u = setting.u * unit;
+  SCANCAL_RETURN_IF_ERROR(CheckSize(dataset, place, quantity.unit, quantity.u));
   if (index < without_nominal && quantity.role != Role::kEstimate && !setting.value)
     return InFile(dataset, place + setting.role + ": expected its value, for example {" + setting.role + ": 123}");
   return index;

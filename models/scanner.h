@@ -81,6 +81,10 @@ Error InFile(const Dataset& dataset, const std::string& sentence);
 // One declared unit of such a quantity in mm, rad or 1.
 double UnitFactor(Unit unit, const Units& units);
 
+// That a standard uncertainty (mm, rad, 1) is one that a scanner may have: below 20 m, a turn, and 1. place: of the
+// key.
+Result<void> CheckSize(const Dataset& dataset, const std::string& place, Unit unit, double u);
+
 // What `parameters:` says of one quantity: sets role, value and u of the one that is named; returns its index.
 // quantities: those of system scope are the parameters, and the first so many have no nominal value: what holds or
 // considers one of them gives it. others: names that may stand there besides, for a suggestion. Error: an unknown name;

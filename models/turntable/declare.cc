@@ -202,6 +202,7 @@ class Influences {
       return Wrong(setting.name,
                    "expected its standard uncertainty in place of estimate: planes cannot tell it from noise_y");
     quantity.u = setting.u * UnitFactor(quantity.unit, dataset_.units);
+    SCANCAL_RETURN_IF_ERROR(CheckSize(dataset_, "influences: " + setting.name + ": ", quantity.unit, quantity.u));
     // Of what is random, none at all is a declaration too, which the residuals may contradict.
     const bool told = random && index != Model::kNoiseZ;
     quantity.role = setting.role == "estimate"                               ? Role::kEstimate
@@ -218,6 +219,7 @@ class Influences {
     if (setting.role == "estimate" && setting.u == 0)
       return Wrong(setting.name, "expected its size: form and offset cannot be told apart by the data alone");
     const double u = setting.u * dataset_.units.length_in_mm / (setting.name == "flatness" ? kPeakToValley : 1);
+    SCANCAL_RETURN_IF_ERROR(CheckSize(dataset_, "influences: " + setting.name + ": ", Unit::kMm, u));
     for (int k = 0; k < kFormModes && u > 0; ++k) {
       model_.quantity(Model::kForm + k).role = setting.role == "estimate" ? Role::kEstimate : Role::kConsider;
       model_.quantity(Model::kForm + k).u = u;
@@ -260,6 +262,7 @@ class Influences {
     Quantity& quantity = model_.quantity(Model::kExpansion);
     quantity.role = Role::kConsider;
     quantity.u = *temperature_ * *expansion_;
+    SCANCAL_RETURN_IF_ERROR(CheckSize(dataset_, "influences: temperature, expansion: ", quantity.unit, quantity.u));
     return {};
   }
 

@@ -37,6 +37,13 @@ constexpr Message<std::string_view, double> kOutsideSearch{
     "turntable.outside_search",
     "{} = {:.6g} mm lies outside the search interval; widen search in dataset.yaml, or look at the scans",
     "{} = {:.6g} mm liegt außerhalb des Suchbereichs; search in dataset.yaml erweitern oder die Scans ansehen"};
+constexpr Message<std::string_view, size_t, size_t> kFewProfiles{
+    "turntable.few_profiles",
+    "target {}: {} profiles fit nearly any plane, so that nothing tells whether they are right; scan it at {} angles "
+    "or "
+    "more",
+    "Prüfkörper {}: {} Profile passen zu fast jeder Ebene; ob sie richtig sind, zeigt daher nichts; bei mindestens {} "
+    "Winkeln scannen"};
 constexpr Message<double> kNarrowSweep{
     "turntable.narrow_sweep",
     "the sweep of {:.2g} deg is too narrow to tell M and N well: a wider one is the cheapest gain; if the file holds "
@@ -74,6 +81,7 @@ constexpr double kImplausibleLength_mm = 50e3;  // no plate is seen from farther
 constexpr double kPerpendicular = 1 * kDegree;  // a plate's normal nearer to the axis tells nothing of M and N
 constexpr double kApart = 5 * kDegree;          // two placements are different
 constexpr double kNarrow = 5 * kDegree;
+constexpr size_t kFewestOfTarget = 4;
 constexpr double kFarFromGrid = 5;  // of step and u
 constexpr double kEdgeOn = 0.02;    // cosine of the incidence
 constexpr double kMuch = 0.3;       // of the points set aside
@@ -305,6 +313,9 @@ void Judge(const GridBox& box, const std::vector<Placement>& placements, const G
   JudgeScans(placements, calibration);
   double widest = 0;
   for (const Placement& placement : placements) widest = std::max(widest, placement.Sweep());
+  for (const Placement& placement : placements)
+    if (placement.profiles.size() < kFewestOfTarget)
+      calibration->unreliable.push_back(Say(kFewProfiles, placement.name, placement.profiles.size(), kFewestOfTarget));
   if (widest < kNarrow) calibration->warnings.push_back(Say(kNarrowSweep, widest / kDegree));
 }
 

@@ -57,13 +57,16 @@ TEST(HelpTest, VersionIsOneLine) {
 
 TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
   EXPECT_THAT(HelpFlags("refine"),
-              ElementsAre("out", "report", "language", "residual", "weights", "max_iterations", "montecarlo"));
-  EXPECT_THAT(HelpFlags("montecarlo"), ElementsAre("out", "report", "language", "trials", "seed", "digits", "threads"));
-  EXPECT_THAT(HelpFlags("report"), ElementsAre("out", "pdf", "dcc", "figures", "previous", "language"));
+              ElementsAre("out", "report", "language", "residual", "weights", "max_iterations", "montecarlo", "sign"));
+  EXPECT_THAT(HelpFlags("montecarlo"),
+              ElementsAre("out", "report", "language", "trials", "seed", "digits", "threads", "sign"));
+  EXPECT_THAT(HelpFlags("report"), ElementsAre("out", "pdf", "dcc", "figures", "previous", "language", "key"));
+  EXPECT_THAT(HelpFlags("recheck"), ElementsAre("key", "sign"));
   EXPECT_THAT(HelpFlags("compare"), ElementsAre("steps", "surface"));
   EXPECT_THAT(HelpFlags("selftest"), ElementsAre("nist"));
-  EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out"));
-  EXPECT_THAT(HelpFlags("propagate"), UnorderedElementsAre("point", "points_file", "units", "distance", "out"));
+  EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out", "unreliable", "key"));
+  EXPECT_THAT(HelpFlags("propagate"),
+              UnorderedElementsAre("point", "points_file", "units", "distance", "out", "unreliable", "key"));
   EXPECT_THAT(HelpFlags("simulate"),
               UnorderedElementsAre("out", "M", "N", "tilt_x", "tilt_y", "scale_y", "scale_z", "shear", "linearity",
                                    "encoder_cos1", "encoder_sin1", "encoder_cos2", "encoder_sin2", "expansion",

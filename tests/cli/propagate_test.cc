@@ -113,13 +113,6 @@ TEST_F(PropagateTest, PointsThatWereNotScannedAreWarnedOf) {
               AllOf(StartsWith("warning: "), HasSubstr("alpha = 80 deg (scanned: -15 to 15 deg)")));
 }
 
-TEST_F(PropagateTest, AnUnreliableCalibrationIsWarnedOf) {
-  Replace(calibration_, "\"status\": \"ok\"", "\"status\": \"unreliable\"");
-  const Outcome outcome = Propagate({"--point=0,50,0"});
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(OneSentence(outcome), AllOf(StartsWith("warning: "), HasSubstr("unreliable")));
-}
-
 TEST_F(PropagateTest, WrongInputIsRefused) {
   EXPECT_THAT(Refusal({}), HasSubstr("no points: "));
   EXPECT_THAT(Refusal({"--point=1,2"}), HasSubstr("point \"1,2\": found 2 values, expected 3: alpha, y, z"));

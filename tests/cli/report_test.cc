@@ -51,11 +51,11 @@ TEST_F(ReportTest, ADoubtfulResultKeepsItsExitCode) {
 }
 
 TEST_F(ReportTest, RefusesWhatIsNoCalibration) {
-  ExpectRefused("", HasSubstr("some.json:1:1"));
+  ExpectRefused("", HasSubstr("some.json: the file is empty"));
   ExpectRefused("{\"scancal\": 1, \"model\": \"turn", HasSubstr("some.json:1:"));
   ExpectRefused("[1, 2]", HasSubstr("is it a calibration.json?"));
-  ExpectRefused("{\"scancal\": 2}", HasSubstr("format version 2"));
-  ExpectRefused("\xff\xfe", HasSubstr("UTF-8"));
+  ExpectRefused("{\"scancal\": 2}", HasSubstr("format version 1, found 2"));
+  ExpectRefused("\xff\xfe", HasSubstr("some.json"));
 }
 
 TEST_F(ReportTest, RefusesWrongArguments) {

@@ -182,13 +182,6 @@ TEST_F(TransformTest, AMissingCalibrationIsNamed) {
   EXPECT_EQ(Refusal(Path("cloud.csv")), calibration_.string() + ": no such file");
 }
 
-TEST_F(TransformTest, AnUnreliableCalibrationIsWarnedOf) {
-  Replace(calibration_, "\"status\": \"ok\"", "\"status\": \"unreliable\"");
-  const Outcome outcome = Transform(Path("cloud.csv"));
-  EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_THAT(OneSentence(outcome), AllOf(HasSubstr("warning"), HasSubstr("unreliable")));
-}
-
 TEST_F(TransformTest, ABadScanLeavesTheOldCloud) {
   WriteWhole(Path("cloud.csv"), "old");
   SetLine(data_ / "right.csv", 700, "x,y,z");

@@ -233,7 +233,7 @@ TEST_F(ScanCsvTest, NumbersWithoutHeaderAreAnError) {
 
 TEST_F(ScanCsvTest, SemicolonsAreAnErrorThatSaysSo) {
   const std::string remedy = "the cells are separated by semicolons, expected commas";
-  EXPECT_THAT(Read("angle;y;z\n1;2;3\n").error, AllOf(HasSubstr(":1: "), HasSubstr("angle;y;z"), HasSubstr(remedy)));
+  EXPECT_THAT(Read("angle;y;z\n1;2;3\n").error, AllOf(HasSubstr(":1: "), HasSubstr("xxxxx;x;x"), HasSubstr(remedy)));
   EXPECT_THAT(Read("1,5;2,5;3,5\n").error, HasSubstr(remedy));
   EXPECT_THAT(Read("angle,y,z\n1;2;3\n").error, HasSubstr(remedy));
 }

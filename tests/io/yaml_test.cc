@@ -249,7 +249,7 @@ TEST_F(YamlTest, EmptyFilesAndListsAreErrors) {
   EXPECT_EQ(OpenError(""), Place(": the file is empty, expected \"key: value\" lines"));
   EXPECT_EQ(OpenError("# only a comment\n"), Place(": the file is empty, expected \"key: value\" lines"));
   EXPECT_EQ(OpenError("- a\n- b\n"), Place(":1:1: found a list, expected \"key: value\" lines"));
-  EXPECT_EQ(OpenError("text\n"), Place(":1:1: found \"text\", expected \"key: value\" lines"));
+  EXPECT_EQ(OpenError("text\n"), Place(":1:1: found other text, expected \"key: value\" lines"));
 }
 
 }  // namespace
