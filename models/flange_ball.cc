@@ -2,7 +2,8 @@
 
 namespace scancal::flange_ball {
 
-Model::Model(std::vector<Link> links) : links_(std::move(links)) {
+Model::Model(std::vector<Link> links)
+    : links_(std::move(links)), joints_of_terms_(JointsOfTerms(static_cast<int>(links_.size()))) {
   using enum Scope;
   const auto declare = [&](const std::string& name, const std::vector<const char*>& components, Unit unit, Scope scope,
                            Role role, const char* source = "") {
@@ -18,6 +19,7 @@ Model::Model(std::vector<Link> links) : links_(std::move(links)) {
   SetDefaultLinkRoles(links_, kLinks, &quantities_);
   for (size_t k = 1; k <= links_.size(); ++k)
     declare("joint_", {std::to_string(k).c_str()}, Unit::kRad, kView, Role::kHold, "joints");
+  DeclareJointTerms(links_.size(), &quantities_);
 }
 
 void Model::SetDirection(const Eigen::Vector3d& direction, Target* target) {

@@ -23,16 +23,19 @@ namespace scancal::flange_ball {
 // coordinates of the base what is left of it would seem to determine theta_1, and it would shrink with the robot: the
 // ball fits best into one of no size.
 //
-// Noise: seat moves the ball, joint_1 .. joint_n the joints of one pose. Lengths mm, angles rad.
+// Noise: seat moves the ball, joint_1 .. joint_n the joints of one pose. What the joints do besides: DeclareJointTerms.
+// Lengths mm, angles rad.
 class Model {
  public:
-  // Each the first of as many as its name has components; links: kLinkNumbers a link, behind them joint_1 .. joint_n.
+  // Each the first of as many as its name has components; links: kLinkNumbers a link, behind them joint_1 .. joint_n,
+  // and the terms of the joints.
   enum Index { kBall = 0, kSpacing = 3, kSocket = 4, kDirection = 7, kSeat = 9, kLinks = 12 };
   static constexpr int kRowsPerPoint = 3;
 
   struct View {  // a pose of the robot
     std::vector<double> joints;
     int socket = 0;
+    std::vector<double> terms = {};  // JointTermsAt; empty: what the joints do is left out
   };
   struct Target {  // NOLINT(bugprone-reserved-identifier): of the copy of an array that clang makes
     std::string name;
@@ -48,6 +51,7 @@ class Model {
   Quantity& quantity(int k) { return quantities_[k]; }
   const std::vector<Link>& links() const { return links_; }
   int FirstOfJoints() const { return kLinks + kLinkNumbers * static_cast<int>(links_.size()); }
+  int FirstOfJointTerms() const { return FirstOfJoints() + static_cast<int>(links_.size()); }
   int Points(const View&) const { return 1; }
   double Count(const View&) const { return kRowsPerPoint; }
   static void SetDirection(const Eigen::Vector3d& direction, Target* target);  // of any length but zero
@@ -57,6 +61,7 @@ class Model {
 
  private:
   std::vector<Link> links_;
+  std::vector<int> joints_of_terms_;
   Quantities quantities_;
 };
 
@@ -65,6 +70,7 @@ void Model::Residual(const Target& tool, const View& pose, const Seen<T>& q, T* 
   using std::cos, std::sin;
   std::vector<T> errors(q.q + kLinks, q.q + FirstOfJoints());
   for (size_t k = 0; k < links_.size(); ++k) errors[kLinkNumbers * k] += q[FirstOfJoints() + static_cast<int>(k)];
+  AddJointTerms(pose.terms, q.q + FirstOfJointTerms(), joints_of_terms_, errors.data());
   ChainFrame<T> flange = MakeChainFrame<T>(Eigen::Isometry3d::Identity());
   MoveAlong(links_, pose.joints.data(), errors.data(), &flange);
   T turn[3], along[3], direction[3], apart[3];

@@ -6,7 +6,7 @@
 namespace scancal {
 namespace {
 
-constexpr ScannerKind kKinds[] = {turntable::kKind, robot_ball::kKind, flange_ball::kKind};
+constexpr ScannerKind kKinds[] = {turntable::kKind, robot_ball::kKind, robot_ball::kTrackerKind, flange_ball::kKind};
 
 }  // namespace
 

@@ -8,20 +8,29 @@ constexpr const char* kAxes[] = {"x", "y", "z", "rx", "ry", "rz"};
 
 }  // namespace
 
-Model::Model(std::vector<Link> links, std::vector<Sphere> spheres)
-    : links_(std::move(links)), spheres_(std::move(spheres)) {
+Model::Model(std::vector<Link> links, std::vector<Sphere> spheres, bool measured_in_world)
+    : links_(std::move(links)),
+      joints_of_terms_(JointsOfTerms(static_cast<int>(links_.size()))),
+      spheres_(std::move(spheres)),
+      measured_in_world_(measured_in_world) {
   using enum Scope;
-  const auto declare = [&](const std::string& name, int count, Scope scope, Role role, const char* source = "") {
+  const auto declare = [&](const std::string& name, int count, Scope scope, Role role, const std::string& source = "") {
     for (int k = 0; k < count; ++k)
-      quantities_.push_back({name + "_" + kAxes[k], k < 3 ? Unit::kMm : Unit::kRad, scope, role, 0, 0, false, source});
+      quantities_.push_back({name + "_" + kAxes[k], k < 3 ? Unit::kMm : Unit::kRad, scope, role, 0, 0, false,
+                             k < 3 || source.empty() ? source : source + "_rotation"});
   };
   declare("hand_eye", 6, kSystem, Role::kEstimate);
   declare("artifact", 6, kTarget, Role::kEstimate);
-  declare("repeatability", 3, kView, Role::kEstimate, "repeatability");  // of these two `estimate` means their
+  declare("repeatability", 6, kView, Role::kEstimate, "repeatability");  // of these two `estimate` means their
   declare("ball", 3, kPoint, Role::kEstimate, "ball");                   // variance
+  declare("drift", 3, kSystem, Role::kHold, "drift");
+  for (const char* name : {"artifact_scale", "scanner_scale"})
+    quantities_.push_back({name, Unit::kOne, kSystem, Role::kHold, 0, 0, false, ""});
   DeclareLinks(links_.size(), &quantities_);
   SetDefaultLinkRoles(links_, kLinks, &quantities_);
+  DeclareJointTerms(links_.size(), &quantities_);
   for (Quantity& quantity : quantities_) quantity.in_nodes = true;
+  quantities_[kScannerScale].in_nodes = false;  // the measured centres are the nodes' constant
   for (const Sphere& sphere : spheres_) length_ = std::max(length_, sphere.centre.norm());
   for (const Sphere& sphere : spheres_) declare("sphere_" + sphere.name, 3, kSystem, Role::kHold, "artifact");
 }
@@ -58,6 +67,29 @@ Eigen::MatrixXd Model::Features(const std::vector<SeenBall>& balls) const {
   Eigen::MatrixXd features(4, std::ssize(balls));
   for (Eigen::Index b = 0; b < features.cols(); ++b) features.col(b) << spheres_[balls[b].sphere].centre, length_;
   return features;
+}
+
+void SetTerms(Measurements* data) {
+  const auto set = [&](std::vector<Model::View*> views) {
+    std::stable_sort(views.begin(), views.end(), [](const auto* a, const auto* b) { return a->number < b->number; });
+    std::vector<const std::vector<double>*> joints;
+    for (const Model::View* view : views) joints.push_back(&view->joints);
+    const std::vector<std::vector<int>> directions = DirectionsOf(joints);
+    const double last = std::max(1.0, static_cast<double>(views.size()) - 1);
+    for (size_t v = 0; v < views.size(); ++v) {
+      views[v]->time = static_cast<double>(v) / last - 0.5;
+      views[v]->terms = JointTermsAt(data->links, views[v]->joints, directions[v], data->gravity);
+    }
+  };
+  std::vector<Model::View*> poses, check, held_out;
+  for (Station& station : data->stations)
+    for (Model::View& view : station.views) poses.push_back(&view);
+  for (CheckLength& length : data->check) check.insert(check.end(), {&length.first_pose, &length.second_pose});
+  for (Station& station : data->held_out)
+    for (Model::View& view : station.views) held_out.push_back(&view);
+  set(std::move(poses));
+  set(std::move(check));
+  set(std::move(held_out));
 }
 
 Eigen::Isometry3d PoseOf(const Eigen::Matrix<double, 6, 1>& numbers) {

@@ -1,4 +1,5 @@
-// A scanner on a robot's flange that sees the balls of an artifact (Zhou et al. 2025).
+// A robot whose flange carries a tool, and a world that stands: points known on the one side are measured from the
+// other.
 #pragma once
 #include <ceres/rotation.h>
 #include <Eigen/Geometry>
@@ -10,7 +11,7 @@
 
 namespace scancal::robot_ball {
 
-// A ball centre c seen in the scanner's frame lies in the base at (eq. 1)
+// A ball centre c seen in the scanner's frame lies in the base at (Zhou et al. 2025, eq. 1)
 //
 //     base_from_flange(q; links) flange_from_scanner c = base_from_artifact k,
 //
@@ -19,16 +20,34 @@ namespace scancal::robot_ball {
 //     r = c - scanner_from_base(q) base_from_artifact k:
 //
 // there lives the noise, and there a turn of the base changes nothing (in the base frame theta_1 looks determined away
-// from the solution). hand_eye_x .. _rz is flange_from_scanner as a translation and a rotation vector; artifact_x ..
-// _rz, one a station, are increments on Target::base_from_artifact, the turn about the artifact's origin.
+// from the solution). A tracker in the world that sees reflectors k of the tool is the same, measured from the other
+// side,
 //
-// What may be wrong besides, each nominally zero: repeatability moves all balls of a pose alike, ball moves one of them
-// by SeenBall::spread times itself, sphere_NAME_x, _y, _z is the error of a centre on the artifact. Lengths mm, angles
-// rad.
+//     r = c - world_from_base base_from_flange(q; links) flange_from_tool k.
+//
+// hand_eye_x .. _rz is flange_from_scanner, or flange_from_tool, as a translation and a rotation vector; artifact_x ..
+// _rz, one a station, are increments on Target::base_from_artifact (the world is the only station), the turn about its
+// origin.
+//
+// What may be wrong besides, each nominally zero: repeatability moves the flange of a pose and turns it about its own
+// origin, and so moves all balls of the pose alike; ball moves one of them by SeenBall::spread times itself;
+// sphere_NAME_x, _y, _z is the error of a centre on the artifact; artifact_scale and scanner_scale are relative errors
+// of all lengths of the one and the other; drift_x, _y, _z is how far what the scanner shows moves from the first pose
+// to the last, in its own frame; and what the joints do (DeclareJointTerms). Lengths mm, angles rad.
 class Model {
  public:
-  // Each the first of three or six, x y z rx ry rz; links: the first of kLinkNumbers a link.
-  enum Index { kHandEye = 0, kArtifact = 6, kRepeatability = 12, kBall = 15, kLinks = 18 };
+  // Each the first of three or six, x y z rx ry rz, or of one; links: the first of kLinkNumbers a link, behind them
+  // what the joints do, then the spheres.
+  enum Index {
+    kHandEye = 0,
+    kArtifact = 6,
+    kRepeatability = 12,
+    kBall = 18,
+    kDrift = 21,
+    kArtifactScale = 24,
+    kScannerScale = 25,
+    kLinks = 26
+  };
   static constexpr int kRowsPerPoint = 3;
 
   struct Sphere {  // of the artifact, in its own frame
@@ -45,6 +64,9 @@ class Model {
     std::vector<double> joints = {};                                     // rad, one a link
     Eigen::Isometry3d base_from_flange = Eigen::Isometry3d::Identity();  // where links are none: as the controller says
     std::vector<SeenBall> balls = {};
+    int number = 0;                  // in the order in which the poses were taken, from 0
+    double time = 0;                 // of all poses, from -1/2 to 1/2
+    std::vector<double> terms = {};  // JointTermsAt; empty: what the joints do is left out
   };
   struct Target {  // a station of the artifact
     std::string name;
@@ -52,13 +74,15 @@ class Model {
     Eigen::Isometry3d base_from_artifact = Eigen::Isometry3d::Identity();  // where artifact_x .. _rz start
   };
 
-  // Hand-eye estimated from zero; links as SetDefaultLinkRoles says; noise estimated; spheres held.
-  Model(std::vector<Link> links, std::vector<Sphere> spheres);
+  // Hand-eye estimated from zero; links as SetDefaultLinkRoles says; noise estimated; spheres held. measured_in_world:
+  // the spheres are on the tool.
+  Model(std::vector<Link> links, std::vector<Sphere> spheres, bool measured_in_world = false);
   const Quantities& quantities() const { return quantities_; }
   Quantity& quantity(int k) { return quantities_[k]; }
   const std::vector<Link>& links() const { return links_; }
   const std::vector<Sphere>& spheres() const { return spheres_; }
-  int FirstOfSpheres() const { return kLinks + kLinkNumbers * static_cast<int>(links_.size()); }
+  int FirstOfJointTerms() const { return kLinks + kLinkNumbers * static_cast<int>(links_.size()); }
+  int FirstOfSpheres() const { return FirstOfJointTerms() + static_cast<int>(joints_of_terms_.size()); }
   int Points(const View& view) const { return static_cast<int>(view.balls.size()); }
   double Count(const View& view) const { return 3.0 * Points(view); }
   // A rotation and a translation of k: four balls of a pose that span space (three in a plane) stand for all of them,
@@ -73,7 +97,9 @@ class Model {
   Eigen::MatrixXd Features(const std::vector<SeenBall>& balls) const;  // 4 x balls: (k, length_)
 
   std::vector<Link> links_;
+  std::vector<int> joints_of_terms_;
   std::vector<Sphere> spheres_;
+  bool measured_in_world_;
   double length_ = 1;  // mm, of the artifact: on a par with its coordinates
   Quantities quantities_;
 };
@@ -89,19 +115,34 @@ struct CheckLength {
 
 // What a data set holds once it is read: mm, rad, no files.
 struct Measurements {
-  std::vector<Link> links;  // none: the poses of the flange are given
+  std::vector<Link> links;         // none: the poses of the flange are given
+  bool measured_in_world = false;  // the spheres are on the tool, the stations are the world's (one)
+  Eigen::Vector3d gravity = -Eigen::Vector3d::UnitZ();  // its direction in the base
   std::vector<Model::Sphere> spheres;
   double u_spheres = 0;           // standard uncertainty of each coordinate of their centres, mm
   double ball_diameter = 0;       // mm; 0: not declared
   std::vector<Station> stations;  // base_from_artifact not set
   std::vector<CheckLength> check;
-  double usual_ball_noise = 0;  // mm: what Model::SeenBall::spread is relative to; 0: nothing was declared
+  std::vector<Station> held_out;  // whole poses that take no part; where the artifact is then is found from the balls
+  double usual_ball_noise = 0;    // mm: what Model::SeenBall::spread is relative to; 0: nothing was declared
+
+  // A seen point as it lies on the tool, and in the world.
+  const Eigen::Vector3d& OnTool(const Model::SeenBall& ball) const {
+    return measured_in_world ? spheres[static_cast<size_t>(ball.sphere)].centre : ball.centre;
+  }
+  const Eigen::Vector3d& InWorld(const Model::SeenBall& ball) const {
+    return measured_in_world ? ball.centre : spheres[static_cast<size_t>(ball.sphere)].centre;
+  }
 };
+
+// Sets time and terms of all poses, calibrated with and held out, each in its own order of numbers.
+void SetTerms(Measurements* data);
 
 // What a method finds.
 struct Kinematics {
   Eigen::Isometry3d flange_from_scanner = Eigen::Isometry3d::Identity();
-  std::vector<Link> link_errors;  // added to the nominal; one a link
+  std::vector<Link> link_errors;         // added to the nominal; one a link
+  std::vector<double> joint_terms = {};  // of DeclareJointTerms; none: zero
 };
 
 // flange_from_scanner of hand_eye_x .. _rz, and back; the rotation vector is at most pi long.
@@ -111,39 +152,56 @@ Eigen::Matrix<double, 6, 1> NumbersOf(const Eigen::Isometry3d& pose);
 template <class T>
 void Model::Residual(const Target& station, const View& pose, const Seen<T>& q, T* r) const {
   ChainFrame<T> flange = MakeChainFrame<T>(pose.base_from_flange);
-  MoveAlong(links_, pose.joints.data(), q.q + kLinks, &flange);
+  std::vector<T> errors(q.q + kLinks, q.q + FirstOfJointTerms());
+  AddJointTerms(pose.terms, q.q + FirstOfJointTerms(), joints_of_terms_, errors.data());
+  MoveAlong(links_, pose.joints.data(), errors.data(), &flange);
   T hand[9], turn[9];  // columns of the rotations
   ceres::AngleAxisToRotationMatrix(q.q + kHandEye + 3, ceres::ColumnMajorAdapter3x3(hand));
   ceres::AngleAxisToRotationMatrix(q.q + kArtifact + 3, ceres::ColumnMajorAdapter3x3(turn));
-  T scanner[12];  // base_from_scanner: columns x, y, z, p
+  const Eigen::Matrix3d& reference = station.base_from_artifact.linear();
+  T tool[12], world[12];  // base_from_tool and base_from_artifact: columns x, y, z, p
   for (int c = 0; c < 4; ++c) {
     const T* in_flange = c < 3 ? hand + 3 * c : q.q + kHandEye;
     for (int i = 0; i < 3; ++i)
-      scanner[3 * c + i] = flange.x[i] * in_flange[0] + flange.y[i] * in_flange[1] + flange.z[i] * in_flange[2];
+      tool[3 * c + i] = flange.x[i] * in_flange[0] + flange.y[i] * in_flange[1] + flange.z[i] * in_flange[2];
+    for (int i = 0; c < 3 && i < 3; ++i)
+      world[3 * c + i] = turn[i] * reference(0, c) + turn[3 + i] * reference(1, c) + turn[6 + i] * reference(2, c);
   }
-  for (int i = 0; i < 3; ++i) scanner[9 + i] += flange.p[i] + q[kRepeatability + i];
+  for (int i = 0; i < 3; ++i) {
+    tool[9 + i] += flange.p[i] + q[kRepeatability + i];
+    world[9 + i] = station.base_from_artifact.translation()[i] + q[kArtifact + i];
+  }
+  const T *known = measured_in_world_ ? tool : world, *measured = measured_in_world_ ? world : tool;
+  const T* tilt = q.q + kRepeatability + 3;  // of the flange, along the axes of the base
+  const bool is_tilted = !std::all_of(tilt, tilt + 3, IsZero<T>);
+  const bool drifts = !std::all_of(q.q + kDrift, q.q + kDrift + 3, IsZero<T>);
   for (int b = 0; b < Points(pose); ++b, r += 3) {
     const SeenBall& seen = pose.balls[b];
     const T* error = q.q + FirstOfSpheres() + 3 * seen.sphere;
     const Eigen::Vector3d& k = spheres_[seen.sphere].centre;
-    const Eigen::Matrix3d& reference = station.base_from_artifact.linear();
-    const Eigen::Vector3d nominal = reference * k;
-    T from_scanner[3];  // base
-    for (int i = 0; i < 3; ++i)
-      from_scanner[i] = turn[i] * nominal[0] + turn[3 + i] * nominal[1] + turn[6 + i] * nominal[2] +
-                        station.base_from_artifact.translation()[i] + q[kArtifact + i] - scanner[9 + i];
-    if (!std::all_of(error, error + 3, IsZero<T>)) {
-      T along[3];
+    T on_known[3], offset[3];  // from the origin of the known frame, from that of the measured one; base
+    for (int i = 0; i < 3; ++i) on_known[i] = known[i] * k[0] + known[3 + i] * k[1] + known[6 + i] * k[2];
+    if (!IsZero(q[kArtifactScale]))
+      for (T& x : on_known) x += x * q[kArtifactScale];
+    if (!std::all_of(error, error + 3, IsZero<T>))
       for (int i = 0; i < 3; ++i)
-        along[i] = reference(i, 0) * error[0] + reference(i, 1) * error[1] + reference(i, 2) * error[2];
-      for (int i = 0; i < 3; ++i)
-        from_scanner[i] += turn[i] * along[0] + turn[3 + i] * along[1] + turn[6 + i] * along[2];
+        on_known[i] += known[i] * error[0] + known[3 + i] * error[1] + known[6 + i] * error[2];
+    for (int i = 0; i < 3; ++i) offset[i] = on_known[i] + known[9 + i] - measured[9 + i];
+    if (is_tilted) {
+      T arm[3];
+      for (int i = 0; i < 3; ++i) arm[i] = on_known[i] + known[9 + i] - flange.p[i];
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, l = (i + 2) % 3;
+        offset[i] += tilt[j] * arm[l] - tilt[l] * arm[j];
+      }
     }
     const T noise[3] = {q(b, kBall), q(b, kBall + 1), q(b, kBall + 2)};
     const bool has_noise = !std::all_of(noise, noise + 3, IsZero<T>);
     for (int c = 0; c < 3; ++c) {
-      r[c] = seen.centre[c] - (scanner[3 * c] * from_scanner[0] + scanner[3 * c + 1] * from_scanner[1] +
-                               scanner[3 * c + 2] * from_scanner[2]);
+      r[c] = seen.centre[c] -
+             (measured[3 * c] * offset[0] + measured[3 * c + 1] * offset[1] + measured[3 * c + 2] * offset[2]);
+      if (drifts) r[c] -= q[kDrift + c] * pose.time;
+      if (!IsZero(q[kScannerScale])) r[c] -= q[kScannerScale] * seen.centre[c];
       for (int j = 0; has_noise && j < 3; ++j) r[c] -= seen.spread(c, j) * noise[j];
     }
   }

@@ -213,8 +213,11 @@ std::string CheckText(const LengthCheck& check) {
     const ErrorSize size = SizeOfErrors(errors);
     return Significant(size.max, 3) + " mm at most, " + Significant(size.mean, 3) + " mm on average";
   };
-  return "error of " + Count(static_cast<double>(check.after.size())) +
-         " known lengths that took no part: " + figures(check.after) + "; before: " + figures(check.before) + "\n";
+  const bool of_poses = !check.names.empty() && check.names.front().id == "robot_ball.held_out";
+  return (of_poses
+              ? "distance at stations that took no part: "
+              : "error of " + Count(static_cast<double>(check.after.size())) + " known lengths that took no part: ") +
+         figures(check.after) + "; before: " + figures(check.before) + "\n";
 }
 
 bool HasDeclared(const Calibration& c) {

@@ -1,6 +1,7 @@
 // From a problem and a start to a Calibration: refinement, weights, covariances side by side, what is determined.
 #pragma once
 #include <optional>
+#include <utility>
 #include "solver/calibration.h"
 #include "solver/linearize.h"
 #include "solver/refine.h"
@@ -53,6 +54,9 @@ Headline HeadlineOf(const Solution& solution, const Covariance& clustered);
 // K V K' of everything that was estimated or declared where the fit is weighted; else clustered by view, and what all
 // views share. The model adds what only it can say.
 Calibration Summarize(const Solution& solution, const PureError& pure_error);
+
+// The estimated parameter that moves furthest in units of its u, and by how many; moves: one per estimated parameter.
+std::pair<std::string, double> Furthest(const std::vector<double>& moves, const Calibration& result);
 
 // Adds to warnings what is worth knowing, to unreliable what forbids relying on the result: no convergence, too few
 // views, targets that contradict each other, data that contradict a prior, and what the model leaves out if it is

@@ -37,6 +37,23 @@ constexpr Message<std::string_view, double, double> kDeclaredTooSmall{
     "solver.declared_too_small",
     "{}: declared with u = {:.3g}, but the residuals show {:.3g} (mm, rad); the larger one is used",
     "{}: angegeben mit u = {:.3g}, die Residuen zeigen jedoch {:.3g} (mm, rad); der größere Wert wird verwendet"};
+constexpr Message<std::string_view, double, double, double, double> kDeclaredExcluded{
+    "solver.declared_excluded",
+    "{}: declared with u = {:.3g}, but the residuals show {:.3g} (mm, rad), {:.2g} times as much (p = {:.1g}): the "
+    "data "
+    "contradict the declaration, or the model lacks something; declare what holds here, or estimate",
+    "{}: angegeben mit u = {:.3g}, die Residuen zeigen jedoch {:.3g} (mm, rad), das {:.2g}-Fache (p = {:.1g}): Die "
+    "Daten "
+    "widersprechen der Angabe, oder dem Modell fehlt etwas; angeben, was hier gilt, oder estimate"};
+constexpr Message<std::string_view, double, double, double, Sentence, size_t, std::string_view, double, size_t>
+    kTargetContradicts{
+        "solver.target_contradicts",
+        "{} contradicts the other targets: F = {:.3g} ({:.3g}, {:.3g} degrees of freedom, {}, corrected for {} "
+        "targets); "
+        "without it {} moves by {:.2g} u ({} of the targets do so): check it, or the model lacks something",
+        "{} widerspricht den übrigen Prüfkörpern: F = {:.3g} ({:.3g}, {:.3g} Freiheitsgrade, {}, korrigiert für {} "
+        "Prüfkörper); ohne ihn verschiebt sich {} um das {:.2g}-Fache von u ({} der Prüfkörper verhalten sich so): "
+        "prüfen, oder dem Modell fehlt etwas"};
 constexpr Message<> kVariancesUnsettled{
     "solver.variances_unsettled", "the variances did not settle; compare u with u clustered",
     "Die Varianzen liefen nicht ein; u ist mit der gruppierten Unsicherheit zu vergleichen"};
@@ -72,6 +89,7 @@ constexpr double kContradiction = 1e-6;    // no chance any more
 constexpr double kNearly = 0.8;            // of the strongest
 constexpr double kFarFromIndependent = 4;  // standard errors
 constexpr double kLeastCorrelation = 0.1;  // makes u too small by a tenth
+constexpr double kExcluded = 1.3;          // times what was declared
 constexpr double kFarFromPrior = 3;        // of the prior's u
 
 Sentence NotConverged(const Sentence& why, const std::map<std::string, double>& direction) {
@@ -96,6 +114,25 @@ void JudgeJackknife(const Solution& solution, const Jackknife& jackknife, double
   }
 }
 
+Sentence Chance(double p) { return p < 1e-16 ? Sentence{"p < 1e-16"} : Say(kChance, p); }
+
+// The most significant of those that matter; the others say the same.
+void JudgeTargets(const Solution& solution, double noise_dof, Calibration* result) {
+  const std::vector<TargetTest> tests =
+      TestTargets(solution.problem, solution.fit.estimate, solution.linear, noise_dof);
+  size_t worst = 0, count = 0;
+  for (size_t t = 0; t < tests.size(); ++t) {
+    count += tests[t].p < kSuspicious;
+    if (tests[t].p < tests[worst].p || (tests[t].p == tests[worst].p && tests[t].F > tests[worst].F)) worst = t;
+  }
+  if (count == 0) return;
+  const TargetTest& test = tests[worst];
+  const auto [which, furthest] = Furthest(Plain(test.moves), *result);
+  (furthest > 1 ? result->unreliable : result->warnings)
+      .push_back(Say(kTargetContradicts, solution.problem.targets[worst].name, test.F, test.dof1, noise_dof,
+                     Chance(test.p), tests.size(), which, furthest, count));
+}
+
 // Several sources may look alike: the first, in the model's order, that explains nearly as much as the strongest.
 void JudgeMisfits(Calibration* result) {
   std::vector<const MisfitTest*> significant;
@@ -111,19 +148,11 @@ void JudgeMisfits(Calibration* result) {
   std::string others;
   for (const MisfitTest* each : significant)
     if (each != strongest) others += (others.empty() ? "" : ", ") + each->source;
-  double furthest = 0;
-  std::string which;
-  for (size_t k = 0; k < result->estimated.size(); ++k) {
-    const double in_u = std::abs(strongest->moves[k]) / result->Find(result->estimated[k])->u;
-    if (in_u <= furthest) continue;
-    furthest = in_u;
-    which = result->estimated[k];
-  }
+  const auto [which, furthest] = Furthest(strongest->moves, *result);
   (furthest > 1 ? result->unreliable : result->warnings)
       .push_back(Say(kMisfit, strongest->source, Say(strongest->considered ? kUnderestimated : kHeld), strongest->size,
                      strongest->unit == Unit::kOne ? "" : " " + std::string(Name(strongest->unit)),
-                     strongest->dof1 > 1 ? " rms" : "", strongest->F,
-                     strongest->p < 1e-16 ? Sentence{"p < 1e-16"} : Say(kChance, strongest->p), which, furthest,
+                     strongest->dof1 > 1 ? " rms" : "", strongest->F, Chance(strongest->p), which, furthest,
                      others.empty() ? Sentence{} : Say(kAlsoSeenAs, others)));
 }
 
@@ -141,8 +170,13 @@ void JudgeNeighbours(const Solution& solution, Calibration* result) {
 }
 
 void JudgeVariances(const Variances& variances, Calibration* result) {
-  for (const Exceeded& exceeded : variances.exceeded)
-    result->warnings.push_back(Say(kDeclaredTooSmall, exceeded.source, exceeded.declared, exceeded.estimated));
+  for (const auto& [source, declared, estimated, p] : variances.exceeded) {
+    if (p < kSuspicious && estimated > kExcluded * declared) {
+      result->unreliable.push_back(Say(kDeclaredExcluded, source, declared, estimated, estimated / declared, p));
+    } else {
+      result->warnings.push_back(Say(kDeclaredTooSmall, source, declared, estimated));
+    }
+  }
   if (!variances.converged) result->warnings.push_back(Say(kVariancesUnsettled));
 }
 
@@ -163,9 +197,18 @@ void JudgePriors(const Problem& problem, Calibration* result) {
 
 }  // namespace
 
+std::pair<std::string, double> Furthest(const std::vector<double>& moves, const Calibration& result) {
+  std::pair<std::string, double> furthest;
+  for (size_t k = 0; k < result.estimated.size(); ++k)
+    if (const double in_u = std::abs(moves[k]) / result.Find(result.estimated[k])->u; in_u > furthest.second)
+      furthest = {result.estimated[k], in_u};
+  return furthest;
+}
+
 void AddDoubts(const Solution& solution, const Jackknife& jackknife, double noise_dof, Calibration* calibration) {
   JudgeJackknife(solution, jackknife, noise_dof, calibration);
   if (solution.variances) {
+    JudgeTargets(solution, noise_dof, calibration);
     JudgeMisfits(calibration);
     JudgeVariances(*solution.variances, calibration);
     JudgeNeighbours(solution, calibration);

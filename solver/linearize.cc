@@ -253,6 +253,34 @@ Observability Observe(const Problem& problem, const Linearization& linear) {
   return result;
 }
 
+std::vector<std::string> HoldUndetermined(std::span<const int> candidates, double part, const Linearization& linear,
+                                          Problem* problem) {
+  const std::vector<int> estimated = problem->With({Scope::kSystem}, Role::kEstimate);
+  std::vector<std::string> held;
+  Eigen::MatrixXd basis(linear.factor.rows(), 0);
+  const auto take = [&](int k) {  // what is left of its column; Gram and Schmidt twice (Parlett 1980, 6.9)
+    const auto c = std::find(estimated.begin(), estimated.end(), k) - estimated.begin();
+    Eigen::VectorXd left = linear.factor.col(c);
+    for (int again = 0; again < 2; ++again) left -= basis * (basis.transpose() * left).eval();
+    const double length = left.norm();
+    if (!(length > part * linear.system_norm[c])) return false;
+    basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
+    basis.rightCols(1) = left / length;
+    return true;
+  };
+  const auto is_candidate = [&](int k) {
+    return std::find(candidates.begin(), candidates.end(), k) != candidates.end();
+  };
+  for (const int k : estimated)
+    if (!is_candidate(k)) take(k);
+  for (const int k : candidates)
+    if (!take(k)) {
+      problem->quantities[k].role = Role::kHold;
+      held.push_back(problem->quantities[k].name);
+    }
+  return held;
+}
+
 Problem Affine(const Problem& problem, const Estimate& at) {
   std::vector<int> known;
   for (int k = 0; k < std::ssize(problem.quantities); ++k) {

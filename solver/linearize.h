@@ -65,6 +65,11 @@ struct Observability {
 
 Observability Observe(const Problem& problem, const Linearization& linear);
 
+// Holds those of these estimated system quantities, in their order, of which less than `part` of the effect is left
+// once all other estimated ones and those before them are taken out; returns their names. At the linearization's point.
+std::vector<std::string> HoldUndetermined(std::span<const int> candidates, double part, const Linearization& linear,
+                                          Problem* problem);
+
 // The problem as it looks from one point, as cheap as that: r(q) = r(q0) + (dr/dq) (q - q0), q0 the values at `at`. For
 // what changes the weights of a problem many times and its estimate hardly. Knows the derivatives of the estimated
 // quantities and of all noise (view and point scope); the values of single points (Rows::Evaluate's `point`) it does

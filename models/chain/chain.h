@@ -91,6 +91,51 @@ void MoveAlong(const std::vector<Link>& links, const double* joints, const T* er
   }
 }
 
+// What a joint does besides turning by what it reads, each nominally zero. Added to q_i (and so to theta_i):
+//
+//     gravity_i_k          sags under a mass at the end of link k: times z_i . ((p_k - o_i) x g) / reach, the moment of
+//                          its weight about axis i, 1 where it hangs out by the whole reach; rad
+//     backlash_i           lags behind the way it came: times the sign of its last move, half the dead band; rad
+//     joint_scale_i        counts of a turn: times q_i; 1
+//     eccentricity_cos1_i  .. _sin1_i, _cos2_i, _sin2_i: of gear and encoder, once and twice a turn: times cos q_i,
+//                          sin q_i, cos 2 q_i, sin 2 q_i; rad
+//
+// (Whitney, Lozinski and Rourke, J. Dyn. Syst. Meas. Control 108, 1986, 1; Judd and Knasinski, IEEE Trans. Robot.
+// Autom. 6, 1990, 20.) All are linear: JointTermsAt says what each is multiplied by in a pose. The moments are those of
+// the nominal links: what their errors change is of second order.
+constexpr int CountOfJointTerms(int links) { return links * (links + 1) / 2 + 6 * links; }
+
+// Appends them, all held at zero, a kind after the other, a source of the budget per kind and joint ("gravity_2").
+void DeclareJointTerms(size_t links, Quantities* quantities);
+
+// d q_i / d term, in that order. direction: of each joint's last move, +1, -1, or 0 where nobody knows. gravity: its
+// direction in the base, a unit vector.
+std::vector<double> JointTermsAt(const std::vector<Link>& links, const std::vector<double>& joints,
+                                 const std::vector<int>& direction, const Eigen::Vector3d& gravity);
+
+// Sign of each joint's last move, of poses in the order in which they were taken; a joint that stood still keeps the
+// sign of its move before.
+std::vector<std::vector<int>> DirectionsOf(const std::vector<const std::vector<double>*>& joints);
+
+// The joint that each term turns.
+std::vector<int> JointsOfTerms(int links);
+
+// errors: kLinkNumbers a link; adds to its thetas what the terms (values as in DeclareJointTerms) make of a pose. at:
+// JointTermsAt of it, or empty: nothing is added.
+template <class T>
+void AddJointTerms(const std::vector<double>& at, const T* terms, const std::vector<int>& joints, T* errors) {
+  for (size_t k = 0; k < at.size(); ++k)
+    if (at[k] != 0 && !IsZero(terms[k])) errors[kLinkNumbers * joints[k]] += at[k] * terms[k];
+}
+
+// joints with what the terms make of the pose, rad. at, terms: as for AddJointTerms; either may be empty.
+std::vector<double> TurnedJoints(std::vector<double> joints, const std::vector<double>& at,
+                                 const std::vector<double>& terms);
+
+// Of the terms that are estimated without a prior, holds those that the data do not tell from the others; returns their
+// names. first, count: of the terms; at: where the fit starts, which then is one of the smaller problem.
+std::vector<std::string> HoldUndeterminedTerms(int first, int count, Problem* problem, Estimate* at);
+
 // The flange at the joint angles (rad, one per link), links as they are.
 Eigen::Isometry3d BaseFromFlange(const std::vector<Link>& links, const std::vector<double>& joints);
 

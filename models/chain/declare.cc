@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include "io/message.h"
 #include "models/scanner.h"
 
@@ -57,6 +58,44 @@ std::vector<Link> ReadLinks(YamlMap top, const Units& units) {
   }
   CheckReach(links, &robot);
   return links;
+}
+
+Eigen::Vector3d ReadGravity(YamlMap top) {
+  Eigen::Vector3d gravity = -Eigen::Vector3d::UnitZ();
+  if (!top.Has("robot")) return gravity;
+  YamlMap robot = top.Map("robot");
+  if (!robot.Has("gravity")) return gravity;
+  YamlMap direction = robot.Map("gravity");
+  gravity = {direction.Number("x", 0), direction.Number("y", 0), direction.Number("z", 0)};
+  if (!(gravity.norm() > 0)) robot.Fail("gravity", "expected its direction in the base, for example {z: -1}");
+  return gravity.normalized();
+}
+
+Result<void> SetSystematic(const InfluenceSetting& setting, const Dataset& dataset, std::span<Quantity> quantities) {
+  if (setting.role == "yes" || setting.role == "no")
+    return InFile(dataset, "influences: " + setting.name + ": found " + setting.role +
+                               ", expected estimate, hold or a standard uncertainty");
+  for (Quantity& quantity : quantities) {
+    if (quantity.Source() != setting.name) continue;
+    quantity.u = setting.u * UnitFactor(quantity.unit, dataset.units);
+    quantity.role = setting.role == "estimate" ? Role::kEstimate : quantity.u > 0 ? Role::kConsider : Role::kHold;
+  }
+  return {};
+}
+
+Result<bool> SetJointTerms(const InfluenceSetting& setting, const Dataset& dataset, std::span<Quantity> terms,
+                           std::vector<std::string>* known) {
+  std::set<std::string> sources;
+  for (const Quantity& term : terms) {
+    const std::string kind = term.source.substr(0, term.source.rfind('_'));
+    sources.insert({kind, term.source});
+    if (setting.name != kind && setting.name != term.source) continue;
+    InfluenceSetting of_term = setting;
+    of_term.name = term.source;
+    SCANCAL_RETURN_IF_ERROR(SetSystematic(of_term, dataset, terms));
+  }
+  known->insert(known->end(), sources.begin(), sources.end());
+  return sources.contains(setting.name);
 }
 
 LinkSetting ReadLinkSetting(const Dataset& dataset) {

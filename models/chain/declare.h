@@ -16,6 +16,10 @@ inline constexpr double kLeastReach_mm = 20, kLargestReach_mm = 20'000;
 // and beta are 0 where they are not given. None without `robot:`. Complains of units that no arm can have.
 std::vector<Link> ReadLinks(YamlMap top, const Units& units);
 
+// robot: {gravity: [0, 0, -1]}: its direction in the base, of any length; down along the base's z where it is not
+// given.
+Eigen::Vector3d ReadGravity(YamlMap top);
+
 // parameters: {links: {estimate: 0, u_length: 0.5, u_angle: 0.1}}, in mm and rad.
 struct LinkSetting {
   bool hold = false;                 // all of them; what is named singly stands
@@ -32,6 +36,15 @@ Result<void> SetParameters(const Dataset& dataset, const LinkSetting& setting, s
 // it always ("ball"), which refuses none; else empty.
 Result<void> SetNoise(const InfluenceSetting& setting, const Dataset& dataset, const std::string& every,
                       std::span<Quantity> quantities);
+
+// What `influences:` says of something that all poses share: {estimate: 0, u: ...}, {consider: ...}, estimate, hold, or
+// a standard uncertainty. Sets all quantities of that source.
+Result<void> SetSystematic(const InfluenceSetting& setting, const Dataset& dataset, std::span<Quantity> quantities);
+
+// The same for what the joints do, of one joint or of all: "gravity_2", "gravity". False: it is no such name. terms:
+// those of DeclareJointTerms. known: their names are added, for a suggestion.
+Result<bool> SetJointTerms(const InfluenceSetting& setting, const Dataset& dataset, std::span<Quantity> terms,
+                           std::vector<std::string>* known);
 
 // Joint angles in tables: columns q1 .. qn, and one too many, which CheckJoints refuses. remedy: see TableColumn.
 std::vector<TableColumn> JointColumns(size_t joints, const std::string& remedy);

@@ -60,4 +60,15 @@ Result<std::vector<Link>> LinkErrorsOf(const Calibration& calibration, size_t li
   return LinksOf(numbers);
 }
 
+std::vector<double> JointTermsOf(const Calibration& calibration, size_t links) {
+  Quantities quantities;
+  DeclareJointTerms(links, &quantities);
+  std::vector<double> terms;
+  for (const Quantity& quantity : quantities) {
+    const Parameter* parameter = calibration.Find(quantity.name);
+    terms.push_back(parameter ? parameter->value : 0);
+  }
+  return terms;
+}
+
 }  // namespace scancal

@@ -26,4 +26,7 @@ Result<Eigen::VectorXd> ValuesOf(const Calibration& calibration, const std::vect
 // theta_1 .. beta_n of all links. An Error also where the calibration has more links than these.
 Result<std::vector<Link>> LinkErrorsOf(const Calibration& calibration, size_t links);
 
+// What the joints do besides (DeclareJointTerms), of all links; those that the calibration does not have are zero.
+std::vector<double> JointTermsOf(const Calibration& calibration, size_t links);
+
 }  // namespace scancal

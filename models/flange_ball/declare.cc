@@ -18,10 +18,15 @@ Result<void> CheckSpacing(const Dataset& dataset, const Model& model) {
   return {};
 }
 
-Result<void> SetInfluence(const InfluenceSetting& setting, const Dataset& dataset, std::span<Quantity> quantities) {
-  if (setting.name != "seat" && setting.name != "joints")
-    return InFile(dataset,
-                  "influences: " + setting.name + ": unknown influence" + Suggestion(setting.name, {"joints", "seat"}));
+Result<void> SetInfluence(const InfluenceSetting& setting, const Dataset& dataset, size_t first_of_terms,
+                          std::span<Quantity> quantities) {
+  if (setting.name != "seat" && setting.name != "joints") {
+    std::vector<std::string> known = {"joints", "seat"};
+    SCANCAL_ASSIGN_OR_RETURN(const bool of_joints,
+                             SetJointTerms(setting, dataset, quantities.subspan(first_of_terms), &known));
+    if (of_joints) return {};
+    return InFile(dataset, "influences: " + setting.name + ": unknown influence" + Suggestion(setting.name, known));
+  }
   return SetNoise(setting, dataset, setting.name == "seat" ? "pose" : "", quantities);
 }
 
@@ -62,6 +67,7 @@ Result<Declaration> Declare(const Dataset& dataset) {
   result.dataset = dataset;
   YamlMap top = dataset.yaml;
   top.Map("robot");  // required
+  result.gravity = ReadGravity(top);
   result.model = Model(ReadLinks(top, dataset.units));
   Model& model = result.model;
   if (top.Has("columns")) result.columns = top.Texts("columns");
@@ -78,7 +84,7 @@ Result<Declaration> Declare(const Dataset& dataset) {
       SetParameters(dataset, links, model.links().size(), Model::kLinks, Model::kSocket, quantities));
   SCANCAL_RETURN_IF_ERROR(CheckSpacing(dataset, model));
   for (const InfluenceSetting& setting : dataset.influences)
-    SCANCAL_RETURN_IF_ERROR(SetInfluence(setting, dataset, quantities));
+    SCANCAL_RETURN_IF_ERROR(SetInfluence(setting, dataset, static_cast<size_t>(model.FirstOfJointTerms()), quantities));
   return result;
 }
 
@@ -90,6 +96,7 @@ Result<Model::Target> ReadTool(const ToolDeclaration& tool, const Declaration& d
     SCANCAL_ASSIGN_OR_RETURN(const Table table, ReadTable(tool.sockets[socket], declaration, joints));
     for (size_t row = 0; row < table.rows(); ++row) target.views.push_back({JointsOf(table, row, joints), socket});
   }
+  SetTerms(declaration.model.links(), declaration.gravity, &target);
   return target;
 }
 

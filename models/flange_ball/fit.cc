@@ -12,17 +12,17 @@ double CountIn(const Model::Target& tool, int socket) {
 }
 
 // What the flanges of a socket's poses have in common.
-Eigen::Matrix<double, 3, 4> MeanFlange(const std::vector<Link>& links, const Model::Target& tool, int socket) {
+Eigen::Matrix<double, 3, 4> MeanFlange(const Robot& robot, const Model::Target& tool, int socket) {
   Eigen::Matrix<double, 3, 4> sum = Eigen::Matrix<double, 3, 4>::Zero();
   for (const Model::View& view : tool.views)
-    if (view.socket == socket) sum += BaseFromFlange(links, view.joints).affine();
+    if (view.socket == socket) sum += robot.FlangeAt(view).affine();
   return sum / CountIn(tool, socket);
 }
 
 }  // namespace
 
 Eigen::Vector3d Robot::Socket(const Model::Target& tool, int socket) const {
-  return MeanFlange(links, tool, socket) * ball.homogeneous();
+  return MeanFlange(*this, tool, socket) * ball.homogeneous();
 }
 
 // (R - mean R) ball = -(p - mean p) over all poses.
@@ -32,7 +32,7 @@ Robot FitBall(const std::vector<Link>& links, const std::vector<Model::Target>& 
   Eigen::MatrixXd moved(rows, 4);
   Eigen::Index row = 0;
   for (const Model::Target& tool : tools) {
-    const Eigen::Matrix<double, 3, 4> mean[2] = {MeanFlange(links, tool, 0), MeanFlange(links, tool, 1)};
+    const Eigen::Matrix<double, 3, 4> mean[2] = {MeanFlange({links}, tool, 0), MeanFlange({links}, tool, 1)};
     for (const Model::View& view : tool.views) {
       moved.middleRows<3>(row) = BaseFromFlange(links, view.joints).affine() - mean[view.socket];
       row += 3;
@@ -44,8 +44,23 @@ Robot FitBall(const std::vector<Link>& links, const std::vector<Model::Target>& 
 Seating SeatingOf(const Robot& robot, const Model::Target& tool) {
   const Eigen::Vector3d sockets[2] = {robot.Socket(tool, 0), robot.Socket(tool, 1)};
   double sum = 0;
-  for (const Model::View& view : tool.views) sum += (robot.InBase(view.joints) - sockets[view.socket]).norm();
+  for (const Model::View& view : tool.views) sum += (robot.InBase(view) - sockets[view.socket]).norm();
   return {sum / static_cast<double>(tool.views.size()), (sockets[1] - sockets[0]).norm()};
+}
+
+void SetTerms(const std::vector<Link>& links, const Eigen::Vector3d& gravity, Model::Target* tool) {
+  for (const int socket : {0, 1}) {
+    std::vector<Model::View*> views;
+    std::vector<const std::vector<double>*> joints;
+    for (Model::View& view : tool->views)
+      if (view.socket == socket) {
+        views.push_back(&view);
+        joints.push_back(&view.joints);
+      }
+    const std::vector<std::vector<int>> directions = DirectionsOf(joints);
+    for (size_t v = 0; v < views.size(); ++v)
+      views[v]->terms = JointTermsAt(links, views[v]->joints, directions[v], gravity);
+  }
 }
 
 Result<Solution> FitJointly(const Model& model, std::vector<Model::Target> tools, int max_iterations) {
@@ -64,6 +79,8 @@ Result<Solution> FitJointly(const Model& model, std::vector<Model::Target> tools
     if (!(model.quantities()[Model::kBall].u > 0)) Eigen::Vector3d::Map(&values[Model::kBall]) = nominal.ball;
     SetValues(problem, values, t, &start);
   }
+  HoldUndeterminedTerms(model.FirstOfJointTerms(), CountOfJointTerms(static_cast<int>(model.links().size())), &problem,
+                        &start);
   Solution solution = Solve(std::move(problem), start, {max_iterations});
   SCANCAL_RETURN_IF_ERROR(CheckDetermined(
       solution.observability,
@@ -74,7 +91,8 @@ Result<Solution> FitJointly(const Model& model, std::vector<Model::Target> tools
 Robot RobotOf(const std::vector<Link>& nominal, const Solution& solution) {
   const std::vector<double> values = Values(solution.problem, solution.fit.estimate, 0);
   const auto errors = Eigen::VectorXd::Map(&values[Model::kLinks], kLinkNumbers * std::ssize(nominal));
-  return {WithErrors(nominal, LinksOf(errors)), Eigen::Vector3d::Map(&values[Model::kBall])};
+  const auto terms = values.end() - CountOfJointTerms(static_cast<int>(nominal.size()));
+  return {WithErrors(nominal, LinksOf(errors)), Eigen::Vector3d::Map(&values[Model::kBall]), {terms, values.end()}};
 }
 
 }  // namespace scancal::flange_ball

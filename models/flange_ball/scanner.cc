@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <cmath>
 #include "models/chain/tables.h"
+#include "solver/uncertainty/jackknife.h"
+#include "solver/weigh.h"
 
 namespace scancal::flange_ball {
 namespace {
@@ -12,13 +14,17 @@ constexpr Message<double, std::string_view, std::string_view, std::string_view> 
     "where the ball is; hold theta_{} and alpha_{}, or give priors",
     "Die Kugel liegt {:.2g} mm neben der Achse des letzten Gelenks: {} und ball_z sind einzeln kaum bestimmt, nur der "
     "Ort der Kugel; theta_{} und alpha_{} festhalten oder Vorwissen angeben"};
-constexpr Message<double, double> kHeldOutStrays{
+constexpr Message<double, double, double, double> kHeldOutStrays{
     "flange_ball.held_out_strays",
-    "at the locations held out the ball strays by {:.3g} mm on average, {:.2g} times as far as where the robot was "
-    "calibrated: the model lacks something there, and u does not hold it; calibrate with more locations of the tool",
-    "An den zurückgehaltenen Orten streut die Kugel im Mittel um {:.3g} mm, {:.2g}-mal so weit wie dort, wo der "
-    "Roboter kalibriert wurde: Dem Modell fehlt dort etwas, das u nicht enthält; mit mehr Orten des Werkzeugs "
-    "kalibrieren"};
+    "at the locations held out the ball strays by {:.3g} mm on average, where {:.3g} mm did in calibration: {:.2g} "
+    "times "
+    "what u and the noise explain (p = {:.1g}): the model lacks something there, and U does not hold it; calibrate "
+    "with "
+    "more locations of the tool",
+    "An den zurückgehaltenen Orten streut die Kugel im Mittel um {:.3g} mm, bei der Kalibrierung um {:.3g} mm: das "
+    "{:.2g}-Fache dessen, was u und das Rauschen erklären (p = {:.1g}): Dem Modell fehlt dort etwas, das U nicht "
+    "enthält; "
+    "mit mehr Orten des Werkzeugs kalibrieren"};
 constexpr Message<std::string_view> kSpacingAt{"flange_ball.spacing_at", "spacing at {}", "Pfannenabstand an {}"};
 constexpr Message<> kNominalFitted{"flange_ball.nominal_fitted", "nominal, ball fitted", "nominell, Kugel angepasst"};
 constexpr Message<> kRefined{"flange_ball.refined", "refined", "verfeinert"};
@@ -72,10 +78,10 @@ void AddTables(const std::vector<Link>& nominal, const std::vector<Model::Target
                 balls = PointResidualTable(), outline = PointTable(), views = SightTable();
     for (size_t v = 0; v < tools[t].views.size(); ++v) {
       const Model::View& view = tools[t].views[v];
-      const Eigen::Vector3d r = residuals[v], flange = BaseFromFlange(robot.links, view.joints).translation();
+      const Eigen::Vector3d r = residuals[v], flange = robot.FlangeAt(view).translation();
       AddPose(view.joints, flange, {static_cast<double>(view.socket), r.norm() / std::sqrt(3.0)}, &poses);
       balls.rows.push_back({static_cast<double>(v), r[0], r[1], r[2]});
-      AddSight(flange, robot.InBase(view.joints), &views);
+      AddSight(flange, robot.InBase(view), &views);
     }
     for (const int socket : {0, 1}) AddPoint(robot.Socket(tools[t], socket), &outline);
     calibration->targets[t].residual_tables = {{"poses", poses}, {"balls", balls}};
@@ -101,11 +107,28 @@ void JudgeBall(const Robot& robot, Calibration* calibration) {
   calibration->warnings.push_back(Say(kBallNearAxis, from_axis, free, before, before));
 }
 
-// Warns of a ball that strays much farther where the tool was held out (mean spreads, mm).
-void JudgeHeldOut(double spread, double held_out, Calibration* calibration) {
-  constexpr double kMuchMore = 1.5;
-  if (held_out < kMuchMore * spread) return;
-  calibration->warnings.push_back(Say(kHeldOutStrays, held_out, held_out / spread));
+// Unreliable: the ball strays farther where the tool was held out than u and the noise explain.
+void JudgeHeldOut(const Robot& robot, const Solution& solution, Model model, const std::vector<Model::Target>& tools,
+                  std::vector<Model::Target> held_out, Calibration* calibration) {
+  constexpr double kSuspicious = 1e-3, kMore = 1.2;
+  if (held_out.empty() || calibration->misfits.empty()) return;
+  const double spread = MeanSpread(robot, tools), strays = MeanSpread(robot, held_out);
+  std::vector<std::vector<double>> values;
+  for (Model::Target& tool : held_out) {
+    Model::SetDirection(robot.Socket(tool, 1) - robot.Socket(tool, 0), &tool);
+    values.push_back(Values(solution.problem, solution.fit.estimate, 0));
+    Eigen::Vector3d::Map(&values.back()[Model::kSocket]) = robot.Socket(tool, 0);
+    values.back()[Model::kDirection] = values.back()[Model::kDirection + 1] = 0;
+  }
+  for (size_t k = 0; k < solution.problem.quantities.size(); ++k)
+    model.quantity(static_cast<int>(k)) = solution.problem.quantities[k];
+  Problem problem = MakeProblem(std::make_shared<const Model>(model), std::move(held_out));
+  Estimate at = NominalStart(problem);
+  for (size_t t = 0; t < values.size(); ++t) SetValues(problem, values[t], t, &at);
+  Weigh(&problem, at);
+  const HeldOutTest test = TestHeldOut(problem, at, calibration->covariance, calibration->misfits.front().dof2);
+  if (test.p < kSuspicious && std::sqrt(test.F) > kMore)
+    calibration->unreliable.push_back(Say(kHeldOutStrays, strays, spread, std::sqrt(test.F), test.p));
 }
 
 }  // namespace
@@ -147,7 +170,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   }
   AddTables(declaration_.model.links(), targets_, solution, &result);
   JudgeBall(robot, &result);
-  if (!check_.empty()) JudgeHeldOut(MeanSpread(robot, targets_), MeanSpread(robot, check_), &result);
+  JudgeHeldOut(robot, solution, declaration_.model, targets_, check_, &result);
   return result;
 }
 

@@ -16,7 +16,11 @@ namespace scancal::flange_ball {
 struct Robot {
   std::vector<Link> links;
   Eigen::Vector3d ball = Eigen::Vector3d::Zero();  // in the flange's frame
-  Eigen::Vector3d InBase(const std::vector<double>& joints) const { return BaseFromFlange(links, joints) * ball; }
+  std::vector<double> joint_terms = {};            // of DeclareJointTerms; none: zero
+  Eigen::Isometry3d FlangeAt(const Model::View& pose) const {
+    return BaseFromFlange(links, TurnedJoints(pose.joints, pose.terms, joint_terms));
+  }
+  Eigen::Vector3d InBase(const Model::View& pose) const { return FlangeAt(pose) * ball; }
   // Of a pose's socket: the mean over all poses in it.
   Eigen::Vector3d Socket(const Model::Target& tool, int socket) const;
 };
@@ -24,6 +28,9 @@ struct Robot {
 // The links as they are, the ball by linear least squares: it shall stay where it is in each socket of each tool.
 // For a robot whose last axis never turns one coordinate is arbitrary.
 Robot FitBall(const std::vector<Link>& links, const std::vector<Model::Target>& tools);
+
+// Sets the terms of all poses of a tool; those of a socket were taken one after the other, in the order of its file.
+void SetTerms(const std::vector<Link>& links, const Eigen::Vector3d& gravity, Model::Target* tool);
 
 // What a robot says of a tool, whether it was calibrated with it or not. Nothing is fitted.
 struct Seating {
@@ -45,6 +52,7 @@ struct ToolDeclaration {  // one location of the tool
 
 struct Declaration {
   Dataset dataset;
+  Eigen::Vector3d gravity = -Eigen::Vector3d::UnitZ();
   Model model{{}};                              // roles, values and u as declared
   std::vector<std::string> columns;             // of files without a header; empty: files have one
   std::vector<ToolDeclaration> targets, check;  // check: not used in the calibration

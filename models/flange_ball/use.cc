@@ -54,7 +54,7 @@ Result<std::vector<Model::Target>> ToolsFromJson(const Json& data, const std::st
 Result<Robot> CalibratedRobot(const std::vector<Link>& nominal, const Calibration& calibration) {
   SCANCAL_ASSIGN_OR_RETURN(const Eigen::VectorXd ball, ValuesOf(calibration, {"ball_x", "ball_y", "ball_z"}));
   SCANCAL_ASSIGN_OR_RETURN(const std::vector<Link> errors, LinkErrorsOf(calibration, nominal.size()));
-  return Robot{WithErrors(nominal, errors), ball};
+  return Robot{WithErrors(nominal, errors), ball, JointTermsOf(calibration, nominal.size())};
 }
 
 }  // namespace
@@ -71,6 +71,8 @@ Result<std::unique_ptr<scancal::Scanner>> Reload(const Dataset& dataset, const J
   const size_t joints = declaration.model.links().size();
   SCANCAL_ASSIGN_OR_RETURN(auto targets, ToolsFromJson(data, "targets", declaration.targets, joints, file));
   SCANCAL_ASSIGN_OR_RETURN(auto check, ToolsFromJson(data, "check", declaration.check, joints, file));
+  for (auto* tools : {&targets, &check})
+    for (Model::Target& tool : *tools) SetTerms(declaration.model.links(), declaration.gravity, &tool);
   declaration.targets.clear();  // nothing is left to be read
   declaration.check.clear();
   return std::unique_ptr<scancal::Scanner>(
@@ -87,7 +89,7 @@ Result<int64_t> Transform(const Dataset& dataset, const Calibration& calibration
       SCANCAL_ASSIGN_OR_RETURN(const Model::Target target, ReadTool(tool, declaration));
       std::vector<std::array<double, 3>> balls;
       for (const Model::View& view : target.views) {
-        const Eigen::Vector3d p = robot.InBase(view.joints);
+        const Eigen::Vector3d p = robot.InBase(view);
         balls.push_back({p.x(), p.y(), p.z()});
       }
       SCANCAL_RETURN_IF_ERROR(cloud->Write(balls, number++));

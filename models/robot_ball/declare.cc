@@ -10,9 +10,14 @@
 namespace scancal::robot_ball {
 namespace {
 
+// Three points stand for a 6-DoF target, with the noise of its pose; they agree to rounding, but rows need some of
+// their own.
+constexpr double kNoiseOfTarget_mm = 1e-3;
+
 struct Files {
-  std::filesystem::path poses, observations, artifact;
+  std::filesystem::path poses, observations, artifact;  // artifact: empty where a tool's points are found from the data
   std::optional<CheckFiles> check;
+  int every = 0;  // this pose of the table is held out, and so on; 0: none
 };
 
 std::filesystem::path FileAt(YamlMap* yaml, const char* key, const std::filesystem::path& folder) {
@@ -21,13 +26,23 @@ std::filesystem::path FileAt(YamlMap* yaml, const char* key, const std::filesyst
   return folder / name;
 }
 
-Files ReadFiles(YamlMap top, const std::filesystem::path& folder) {
-  Files files{
-      FileAt(&top, "poses", folder), FileAt(&top, "observations", folder), FileAt(&top, "artifact", folder), {}};
+Files ReadFiles(YamlMap top, const std::filesystem::path& folder, bool measured_in_world) {
+  Files files{FileAt(&top, "poses", folder), FileAt(&top, "observations", folder), {}, {}};
+  if (!measured_in_world) {
+    files.artifact = FileAt(&top, "artifact", folder);
+  } else if (const std::string tool = top.Text("tool", "free"); tool != "free") {
+    files.artifact = folder / tool;
+  }
   if (top.Has("check")) {
     YamlMap check = top.Map("check");
-    files.check = {FileAt(&check, "poses", folder), FileAt(&check, "observations", folder),
-                   FileAt(&check, "distances", folder)};
+    if (check.Has("every")) {
+      const double every = check.Number("every");
+      if (every < 2 || every != std::floor(every)) check.Fail("every", "expected a whole number, 2 or more");
+      files.every = static_cast<int>(every);
+      return files;
+    }
+    files.check = {FileAt(&check, "poses", folder), FileAt(&check, "observations", folder), {}};
+    if (!measured_in_world && check.Has("distances")) files.check->distances = FileAt(&check, "distances", folder);
   }
   return files;
 }
@@ -70,40 +85,106 @@ Result<void> CheckBalls(const Measurements& data, const Observations& observatio
   return Error{observations.table.name() + ": " + wrong->sentence};
 }
 
+// Names of all points that were seen, as they first appear.
+std::vector<std::string> SeenNames(const Observations& observations) {
+  std::vector<std::string> names;
+  for (size_t k = 0; k < observations.seen.size(); ++k)
+    if (std::find(names.begin(), names.end(), observations.Ball(k)) == names.end())
+      names.push_back(observations.Ball(k));
+  return names;
+}
+
+Result<Observations> ReadSeen(const std::filesystem::path& file, const std::filesystem::path& folder,
+                              const Declaration& declaration) {
+  const Units& units = declaration.dataset.units;
+  if (declaration.data.measured_in_world) return ReadTracked(file, units);
+  return ReadObservations(file, folder, units, declaration.data.ball_diameter);
+}
+
+std::vector<std::string> BallsOf(const Measurements& data) {
+  std::vector<std::string> balls;
+  for (const Model::Sphere& sphere : data.spheres) balls.push_back(sphere.name);
+  return balls;
+}
+
+// Every so many poses of the table, by their lines.
+void HoldOut(int every, Measurements* data) {
+  if (every == 0) return;
+  std::vector<Station> kept;
+  for (Station& station : data->stations) {
+    Station in{station.name, {}}, out{station.name, {}};
+    for (Model::View& view : station.views)
+      (view.number % every == every - 1 ? out : in).views.push_back(std::move(view));
+    if (!in.views.empty()) kept.push_back(std::move(in));
+    if (!out.views.empty()) data->held_out.push_back(std::move(out));
+  }
+  data->stations = std::move(kept);
+}
+
 Result<void> TakeStations(const Files& files, const std::filesystem::path& folder, Declaration* result) {
   Measurements& data = result->data;
   const Units& units = result->dataset.units;
-  SCANCAL_ASSIGN_OR_RETURN(const Artifact artifact, ReadArtifact(files.artifact, units));
-  TakeArtifact(artifact, result);
-  SCANCAL_ASSIGN_OR_RETURN(Poses poses, ReadPoses(files.poses, data.links, units));
-  SCANCAL_ASSIGN_OR_RETURN(const Observations observations,
-                           ReadObservations(files.observations, folder, units, data.ball_diameter));
-  std::vector<std::string> balls;
-  for (const Model::Sphere& sphere : data.spheres) balls.push_back(sphere.name);
+  std::string where = files.observations.string();  // the table of the balls
+  if (!files.artifact.empty()) {
+    SCANCAL_ASSIGN_OR_RETURN(const Artifact artifact, ReadArtifact(files.artifact, units));
+    TakeArtifact(artifact, result);
+    where = artifact.table.name();
+  }
+  SCANCAL_ASSIGN_OR_RETURN(Poses poses, ReadPoses(files.poses, data.links, units, !data.measured_in_world));
+  SCANCAL_ASSIGN_OR_RETURN(const Observations observations, ReadSeen(files.observations, folder, *result));
+  const std::vector<std::string> balls = files.artifact.empty() ? SeenNames(observations) : BallsOf(data);
   const double declared = DeclaredInfluence(result->dataset, "ball");
-  SCANCAL_RETURN_IF_ERROR(AttachBalls(observations, balls, artifact.table.name(), declared, &poses));
-  data.usual_ball_noise = UsualNoise(observations, declared);
-  result->centres_have_u = !observations.fitted && observations.table.Has("u") && data.usual_ball_noise > 0;
+  SCANCAL_RETURN_IF_ERROR(AttachBalls(observations, balls, where, declared, &poses));
+  if (!observations.balls.empty()) {  // of a 6-DoF target: no measured points
+    data.spheres = SpheresOfTarget();
+    result->u_of_spheres.assign(data.spheres.size(), 0);
+  } else if (files.artifact.empty()) {
+    SCANCAL_ASSIGN_OR_RETURN(const Shape shape, ShapeOf(poses.stations, balls));
+    data.spheres = shape.spheres;
+    data.u_spheres = shape.u;
+    result->u_of_spheres.assign(data.spheres.size(), shape.u);
+  }
+  data.usual_ball_noise = observations.balls.empty() ? UsualNoise(observations, declared) : kNoiseOfTarget_mm;
+  result->centres_have_u =
+      !observations.balls.empty() || (!observations.fitted && observations.table.Has("u") && data.usual_ball_noise > 0);
   data.stations = TakeSeenStations(&poses, &result->warnings);
+  DropCopies(poses.table.name(), &data, &result->warnings);
+  HoldOut(files.every, &data);
   SCANCAL_RETURN_IF_ERROR(CheckPoses(data, poses.table.name(), &result->warnings));
-  SCANCAL_RETURN_IF_ERROR(CheckBalls(data, observations));
+  if (!data.measured_in_world) SCANCAL_RETURN_IF_ERROR(CheckBalls(data, observations));
   result->files.insert(result->files.end(), observations.files.begin(), observations.files.end());
   Append(observations.warnings, &result->warnings);
+  return {};
+}
+
+// Poses and what was seen from them that take no part.
+Result<void> TakeHeldOut(const CheckFiles& files, const std::filesystem::path& folder, Declaration* result) {
+  Measurements& data = result->data;
+  SCANCAL_ASSIGN_OR_RETURN(Poses poses,
+                           ReadPoses(files.poses, data.links, result->dataset.units, !data.measured_in_world));
+  SCANCAL_ASSIGN_OR_RETURN(const Observations observations, ReadSeen(files.observations, folder, *result));
+  SCANCAL_RETURN_IF_ERROR(
+      AttachBalls(observations, BallsOf(data), "the calibration", DeclaredInfluence(result->dataset, "ball"), &poses));
+  data.held_out = TakeSeenStations(&poses, &result->warnings);
+  result->files.insert(result->files.end(), {files.poses, files.observations});
   return {};
 }
 
 // All that dataset.yaml itself says.
 Result<Files> TakeYaml(const Dataset& dataset, Declaration* result) {
   result->dataset = dataset;
-  const Files files = ReadFiles(dataset.yaml, dataset.file.parent_path());
+  result->data.measured_in_world = dataset.model == kTracker;
+  const Files files = ReadFiles(dataset.yaml, dataset.file.parent_path(), result->data.measured_in_world);
   result->data.links = ReadLinks(dataset.yaml, dataset.units);
+  result->data.gravity = ReadGravity(dataset.yaml);
   result->data.ball_diameter = DiameterOf(dataset.yaml, dataset.units);
   result->links = ReadLinkSetting(dataset);
   SCANCAL_RETURN_IF_ERROR(dataset.yaml.Finish());
   return files;
 }
 
-const std::vector<std::string> kInfluences = {"artifact", "ball", "repeatability"};
+const std::vector<std::string> kInfluences = {
+    "artifact", "ball", "repeatability", "repeatability_rotation", "artifact_scale", "scanner_scale", "drift"};
 
 class Setter {
  public:
@@ -126,8 +207,15 @@ class Setter {
     const std::string place = "influences: " + setting.name + ": ";
     const bool has_role = setting.role != "yes" && setting.role != "no";
     if (setting.name == "artifact" && has_role) return SetArtifact(setting, place);
-    if (std::find(kInfluences.begin(), kInfluences.end(), setting.name) == kInfluences.end())
-      return InFile(dataset_, place + "unknown influence" + Suggestion(setting.name, kInfluences));
+    std::vector<std::string> known = kInfluences;
+    SCANCAL_ASSIGN_OR_RETURN(
+        const bool of_joints,
+        SetJointTerms(setting, dataset_, quantities.subspan(static_cast<size_t>(model_.FirstOfJointTerms())), &known));
+    if (of_joints) return {};
+    if (std::find(known.begin(), known.end(), setting.name) == known.end())
+      return InFile(dataset_, place + "unknown influence" + Suggestion(setting.name, known));
+    if (setting.name == "artifact_scale" || setting.name == "scanner_scale" || setting.name == "drift")
+      return SetSystematic(setting, dataset_, quantities);
     return SetNoise(setting, dataset_, setting.name == "ball" ? "ball" : "", quantities);
   }
 
@@ -175,6 +263,7 @@ Result<Declaration> Redeclare(const Dataset& dataset, Declaration read) {
   if (read.data.links.size() != joints)
     return Error{dataset.yaml.Where("robot") + ": expected the links that the data were read with"};
   read.files = {dataset.file};
+  SetTerms(&read.data);
   return read;
 }
 
@@ -183,9 +272,12 @@ Result<Declaration> Declare(const Dataset& dataset) {
   SCANCAL_ASSIGN_OR_RETURN(const Files files, TakeYaml(dataset, &result));
   const std::filesystem::path folder = dataset.file.parent_path();
   Measurements& data = result.data;
-  result.files = {dataset.file, files.poses, files.observations, files.artifact};
+  result.files = {dataset.file, files.poses, files.observations};
+  if (!files.artifact.empty()) result.files.push_back(files.artifact);
   SCANCAL_RETURN_IF_ERROR(TakeStations(files, folder, &result));
-  if (files.check) {
+  if (files.check && files.check->distances.empty()) {
+    SCANCAL_RETURN_IF_ERROR(TakeHeldOut(*files.check, folder, &result));
+  } else if (files.check) {
     SCANCAL_ASSIGN_OR_RETURN(CheckLengths check,
                              ReadCheck(*files.check, folder, data.links, dataset.units, data.ball_diameter));
     data.check = std::move(check.lengths);
@@ -193,11 +285,16 @@ Result<Declaration> Declare(const Dataset& dataset) {
     result.files.insert(result.files.end(), check.files.begin(), check.files.end());
     Append(check.warnings, &result.warnings);
   }
+  SetTerms(&data);
   return result;
 }
 
 Result<Model> DeclareModel(const Declaration& declaration) {
-  Model model(declaration.data.links, declaration.data.spheres);
+  const Measurements& data = declaration.data;
+  Model model(data.links, data.spheres, data.measured_in_world);
+  if (data.spheres.size() == 1)  // a point has no turn
+    for (int k = 3; k < 6; ++k)
+      model.quantity((data.measured_in_world ? Model::kHandEye : Model::kArtifact) + k).role = Role::kHold;
   SCANCAL_RETURN_IF_ERROR(Setter(declaration, &model).Run());
   return model;
 }

@@ -11,6 +11,8 @@
 
 namespace scancal::robot_ball {
 
+inline constexpr char kTracker[] = "robot-tracker";
+
 struct Declaration {
   Dataset dataset;
   Measurements data;

@@ -1,6 +1,7 @@
 #include "models/robot_ball/fit.h"
 #include <glog/logging.h>
 #include <memory>
+#include <numbers>
 #include "models/robot_ball/start.h"
 #include "models/scanner.h"
 
@@ -9,14 +10,38 @@ namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-// values: one per quantity of the model.
-Kinematics KinematicsOf(const std::vector<double>& values, size_t joints) {
-  const auto errors =
-      Eigen::VectorXd::Map(values.data() + Model::kLinks, kLinkNumbers * static_cast<Eigen::Index>(joints));
-  return {PoseOf(Vector6d::Map(&values[Model::kHandEye])), LinksOf(errors)};
+// Whether the hand-eye's turn is told by a vector longer than half a turn. One with a prior, or held, is told as
+// declared.
+bool IsBeyondHalfATurn(const Solution& solution) {
+  const std::vector<double> values = Values(solution.problem, solution.fit.estimate, 0);
+  for (int k = Model::kHandEye + 3; k < Model::kHandEye + 6; ++k) {
+    const Quantity& quantity = solution.problem.quantities[k];
+    if (quantity.role != Role::kEstimate || quantity.u > 0) return false;
+  }
+  return Eigen::Vector3d::Map(&values[Model::kHandEye + 3]).norm() > std::numbers::pi;
+}
+
+// The same turn, told by the vector of less than half a turn.
+Estimate WithinHalfATurn(const Solution& solution) {
+  Estimate estimate = solution.fit.estimate;
+  for (size_t t = 0; t < estimate.targets.size(); ++t) {
+    std::vector<double> values = Values(solution.problem, solution.fit.estimate, t);
+    auto turn = Eigen::Vector3d::Map(&values[Model::kHandEye + 3]);
+    turn *= 1 - 2 * std::numbers::pi / turn.norm();
+    SetValues(solution.problem, values, t, &estimate);
+  }
+  return estimate;
 }
 
 }  // namespace
+
+Kinematics KinematicsOf(const std::vector<double>& values, size_t joints) {
+  const auto numbers = kLinkNumbers * static_cast<Eigen::Index>(joints);
+  const auto terms = values.begin() + Model::kLinks + numbers;
+  return {PoseOf(Vector6d::Map(&values[Model::kHandEye])),
+          LinksOf(Eigen::VectorXd::Map(values.data() + Model::kLinks, numbers)),
+          {terms, terms + CountOfJointTerms(static_cast<int>(joints))}};
+}
 
 Result<JointFit> FitJointly(const Measurements& data, const Model& model, const Eigen::Isometry3d& hand_eye,
                             int max_iterations) {
@@ -29,12 +54,19 @@ Result<JointFit> FitJointly(const Measurements& data, const Model& model, const 
   problem.WeighEqually(data.usual_ball_noise > 0 ? data.usual_ball_noise : 1);
   Estimate from = NominalStart(problem);
   SetValues(problem, start, 0, &from);
-  fit.solution = Solve(std::move(problem), from, {max_iterations});
+  fit.held = HoldUndeterminedTerms(model.FirstOfJointTerms(), CountOfJointTerms(static_cast<int>(data.links.size())),
+                                   &problem, &from);
+  Solution plain = Solve(std::move(problem), from, {max_iterations});
   SCANCAL_RETURN_IF_ERROR(CheckDetermined(
-      fit.solution.observability,
+      plain.observability,
       {"station", "its balls do not determine where the artifact stands; they need three that are not in a line",
        "these poses, which may turn about too few directions"}));
-  fit.solution = SolveWeighted(fit.solution, kLeastSigma_mm, {max_iterations});
+  if (IsBeyondHalfATurn(plain)) plain = Solve(plain.problem, WithinHalfATurn(plain), {max_iterations});
+  fit.solution = SolveWeighted(plain, kLeastSigma_mm, {max_iterations});
+  if (IsBeyondHalfATurn(fit.solution)) {  // the weights move it across
+    plain = Solve(plain.problem, WithinHalfATurn(fit.solution), {max_iterations});
+    fit.solution = SolveWeighted(plain, kLeastSigma_mm, {max_iterations});
+  }
   return fit;
 }
 

@@ -6,9 +6,13 @@
 
 namespace scancal::robot_ball {
 
+// values: one per quantity of the model.
+Kinematics KinematicsOf(const std::vector<double>& values, size_t joints);
+
 struct JointFit {
   std::vector<Station> stations;  // as they entered: the poses from which artifact_x .. _rz count
   Solution solution;
+  std::vector<std::string> held;  // of what the joints do: was to be estimated, but these poses do not determine it
   Kinematics Found() const;
   Eigen::Isometry3d BaseFromArtifact(size_t station) const;
 };

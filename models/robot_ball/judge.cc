@@ -1,5 +1,6 @@
 #include "models/robot_ball/judge.h"
 #include <fmt/format.h>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -7,8 +8,12 @@
 #include "io/units.h"
 #include "models/chain/declare.h"
 #include "models/median.h"
+#include "models/robot_ball/published.h"
 #include "models/robot_ball/start.h"
 #include "solver/dense.h"
+#include "solver/uncertainty/gum.h"
+#include "solver/uncertainty/misfit.h"
+#include "solver/weigh.h"
 
 namespace scancal::robot_ball {
 namespace {
@@ -29,10 +34,15 @@ constexpr Message<std::string_view, size_t, size_t, std::string_view> kFewBalls{
     "{}: {} Posen sahen weniger als {} Kugeln, zu wenige, um das Normal für sich allein zu verorten: {}"};
 constexpr Message<std::string_view, std::string_view, double, double> kPoseOff{
     "robot_ball.pose_off",
-    "pose {} of station {}: its balls lie {:.2g} mm off, {:.2g} times the median of all poses; check its joint angles "
-    "and balls, or leave it out",
-    "Pose {} an Station {}: Ihre Kugeln liegen um {:.2g} mm daneben, das {:.2g}-Fache des Medians aller Posen; "
-    "Gelenkwinkel und Kugeln prüfen oder die Pose weglassen"};
+    "pose {} of station {} is set aside: its balls lie {:.2g} mm off, {:.2g} times the median of all poses; check its "
+    "joint angles and balls",
+    "Pose {} an Station {} ist ausgesondert: Ihre Kugeln liegen um {:.2g} mm daneben, das {:.2g}-Fache des Medians "
+    "aller "
+    "Posen; Gelenkwinkel und Kugeln prüfen"};
+constexpr Message<size_t, size_t> kManyOff{
+    "robot_ball.many_off",
+    "{} of {} poses had to be set aside: that is no exception; check the joint angles, and what was seen",
+    "{} von {} Posen mussten ausgesondert werden: Das ist keine Ausnahme; Gelenkwinkel und Beobachtungen prüfen"};
 constexpr Message<std::string_view, double, double> kOtherLength{
     "robot_ball.other_length", "check: {}: measured {:.6g} mm, known as {:.6g} mm: another unit, or other balls?",
     "Prüfung: {}: gemessen {:.6g} mm, bekannt als {:.6g} mm: eine andere Einheit oder andere Kugeln?"};
@@ -41,6 +51,43 @@ constexpr Message<double, double> kWorseThanNominal{
     "check: the known lengths are off by {:.2g} mm on average, more than with the nominal robot ({:.2g} mm)",
     "Prüfung: Die bekannten Längen weichen im Mittel um {:.2g} mm ab, mehr als mit dem nominellen Roboter ({:.2g} mm)"};
 
+constexpr Message<Sentence, std::string_view, std::string_view, double, double, double, double, std::string_view,
+                  double>
+    kChanged{
+        "robot_ball.changed",
+        "{} stands elsewhere from pose {} of station {} on, by {:.2g} mm and {:.2g} rad (F = {:.3g}, p = {:.1g}, "
+        "corrected for all poses that were tried), which moves {} by {:.2g} u: was it knocked, or loose? Calibrate "
+        "with the poses of one side only",
+        "{} steht ab Pose {} an Station {} anders, um {:.2g} mm und {:.2g} rad (F = {:.3g}, p = {:.1g}, korrigiert "
+        "für alle geprüften Posen); das verschiebt {} um das {:.2g}-Fache von u: angestoßen oder locker? Nur mit "
+        "den Posen einer Seite kalibrieren"};
+constexpr Message<> kTool{"robot_ball.tool", "the scanner on its flange", "Der Scanner an seinem Flansch"};
+constexpr Message<> kArtifact{"robot_ball.artifact", "the artifact (or the base)", "Das Normal (oder die Basis)"};
+constexpr Message<double, double, double> kLengthsOff{
+    "robot_ball.lengths_off",
+    "check: the known lengths are off by {:.3g} mm rms, {:.2g} times what the uncertainties and the noise explain (p = "
+    "{:.1g}): the model lacks something where they were measured, and U does not hold it",
+    "Prüfung: Die bekannten Längen weichen um {:.3g} mm (quadratisches Mittel) ab, das {:.2g}-Fache dessen, was "
+    "Unsicherheiten und Rauschen erklären (p = {:.1g}): Dem Modell fehlt dort etwas, das U nicht enthält"};
+constexpr Message<double, double, double> kLengthsShifted{
+    "robot_ball.lengths_shifted",
+    "check: the known lengths are off by {:+.3g} mm on average, with a standard uncertainty of {:.2g} mm (p = {:.1g}): "
+    "a scale is wrong, or the model lacks something",
+    "Prüfung: Die bekannten Längen weichen im Mittel um {:+.3g} mm ab, bei einer Standardunsicherheit von {:.2g} mm (p "
+    "= "
+    "{:.1g}): Ein Maßstab ist falsch, oder dem Modell fehlt etwas"};
+
+constexpr Message<double, double, double, double> kHeldOutOff{
+    "robot_ball.held_out_off",
+    "the poses held out are {:.2g} times as far off as u and the noise explain (F = {:.3g}, {:.0f} degrees of freedom, "
+    "p = "
+    "{:.1g}): the model lacks something there, and U does not hold it",
+    "Die zurückgehaltenen Posen liegen um das {:.2g}-Fache dessen daneben, was u und das Rauschen erklären (F = "
+    "{:.3g}, "
+    "{:.0f} Freiheitsgrade, p = {:.1g}): Dem Modell fehlt dort etwas, das U nicht enthält"};
+
+constexpr double kSuspicious = 1e-3;
+constexpr double kMore = 1.2;  // times what is explained: less is of no consequence
 constexpr size_t kFewestBalls = 3;
 constexpr double kLeastTurn_rad = 0.0175;  // one degree, rms
 
@@ -90,9 +137,9 @@ Result<void> CheckStations(const Measurements& data, const std::string& where, s
     std::set<int> balls;
     for (const Model::View& view : station.views) {
       for (const Model::SeenBall& ball : view.balls) balls.insert(ball.sphere);
-      if (view.balls.size() < kFewestBalls) few.push_back(view.name);
+      if (view.balls.size() < std::min(kFewestBalls, data.spheres.size())) few.push_back(view.name);
     }
-    if (balls.size() < kFewestBalls)
+    if (balls.size() < std::min(kFewestBalls, data.spheres.size()))
       return Error{
           fmt::format("{}: all poses of station {} together saw {} of the balls, expected {} or more: the pose "
                       "of the artifact is not determined; add balls, or remove the station",
@@ -257,12 +304,12 @@ class BallNames {
   double ratio_ = 1, noise_ = 0;
 };
 
-constexpr double kGross = 5;  // times the median of all poses: noise of a few balls reaches two
-constexpr size_t kNamed = 3;  // poses
+constexpr double kGross = 5;           // times the median of all poses: noise of a few balls reaches two
+constexpr double kMostSetAside = 0.1;  // of the poses
 constexpr double kOtherUnit = 0.1;
 
 struct OffPose {
-  std::string station, pose;
+  size_t station, view;
   double rms = 0;  // mm, of its balls from the artifact
 };
 
@@ -271,37 +318,150 @@ std::vector<OffPose> ByPose(const Measurements& data, const JointFit& fit) {
   std::vector<OffPose> poses;
   for (size_t t = 0; t < data.stations.size(); ++t) {
     const Eigen::Isometry3d base_from_artifact = fit.BaseFromArtifact(t);
-    for (const Model::View& pose : data.stations[t].views) {
-      const Eigen::Isometry3d base_from_scanner = BaseFromScanner(data, setup, pose);
+    for (size_t v = 0; v < data.stations[t].views.size(); ++v) {
+      const Model::View& pose = data.stations[t].views[v];
+      const Eigen::Isometry3d base_from_tool = BaseFromScanner(data, setup, pose);
       double squares = 0;
       for (const Model::SeenBall& ball : pose.balls)
-        squares +=
-            (base_from_scanner * ball.centre - base_from_artifact * data.spheres[ball.sphere].centre).squaredNorm();
-      poses.push_back({data.stations[t].name, pose.name,
-                       std::sqrt(squares / static_cast<double>(std::max<size_t>(1, pose.balls.size())))});
+        squares += (base_from_tool * data.OnTool(ball) - base_from_artifact * data.InWorld(ball)).squaredNorm();
+      poses.push_back({t, v, std::sqrt(squares / static_cast<double>(std::max<size_t>(1, pose.balls.size())))});
     }
   }
   return poses;
 }
 
-void JudgePoses(const Measurements& data, const JointFit& fit, Calibration* result) {
+// Poses far from where all others put them. One bad pose pulls its neighbours with it: those nearer than half of the
+// worst wait until it is gone. Each is named.
+std::vector<OffPose> SetAside(const Measurements& data, const JointFit& fit, std::vector<Sentence>* warnings) {
   constexpr double kRounding_mm = 1e-5;
   std::vector<OffPose> poses = ByPose(data, fit);
   std::vector<double> all;
   for (const OffPose& pose : poses) all.push_back(pose.rms);
   const double usual = std::max(Median(all), kRounding_mm);
   std::erase_if(poses, [&](const OffPose& pose) { return pose.rms <= kGross * usual; });
-  std::sort(poses.begin(), poses.end(), [](const OffPose& a, const OffPose& b) { return a.rms > b.rms; });
-  // One bad pose pulls its neighbours with it.
+  std::stable_sort(poses.begin(), poses.end(), [](const OffPose& a, const OffPose& b) { return a.rms > b.rms; });
   std::erase_if(
       poses, [&, worst = poses.empty() ? 0 : poses.front().rms](const OffPose& pose) { return pose.rms < worst / 2; });
-  for (size_t k = 0; k < poses.size() && k < kNamed; ++k)
-    result->unreliable.push_back(Say(kPoseOff, poses[k].pose, poses[k].station, poses[k].rms, poses[k].rms / usual));
+  for (const OffPose& pose : poses)
+    warnings->push_back(Say(kPoseOff, data.stations[pose.station].views[pose.view].name,
+                            data.stations[pose.station].name, pose.rms, pose.rms / usual));
+  return poses;
 }
 
-void JudgeCheck(const Measurements& data, Calibration* result) {
+double NoiseDof(const Calibration& result) { return result.misfits.empty() ? 0 : result.misfits.front().dof2; }
+
+// A scanner that slipped in its mount, or an artifact that was pushed at its station (or the base, after which all
+// stations are new).
+void JudgeChange(const ScreenedFit& fitted, Calibration* result) {
+  using Order = std::vector<std::pair<size_t, size_t>>;
+  const Solution& solution = fitted.fit.solution;
+  const auto number = [&](const std::pair<size_t, size_t>& at) {
+    return fitted.data.stations[at.first].views[at.second].number;
+  };
+  const auto by_number = [&](const auto& a, const auto& b) { return number(a) < number(b); };
+  const auto six_from = [&](int first) {
+    std::vector<int> six(6);
+    for (int k = 0; k < 6; ++k) six[static_cast<size_t>(k)] = first + k;
+    return six;
+  };
+  const auto find = [&](const Order& order, int first) {
+    return FindChange(solution.problem, solution.fit.estimate, solution.linear, NoiseDof(*result), order,
+                      six_from(first));
+  };
+  Order all, order;
+  Change best;
+  for (size_t t = 0; t < fitted.data.stations.size(); ++t) {
+    Order own;
+    for (size_t v = 0; v < fitted.data.stations[t].views.size(); ++v) own.push_back({t, v});
+    all.insert(all.end(), own.begin(), own.end());
+    std::stable_sort(own.begin(), own.end(), by_number);
+    Change change = find(own, Model::kArtifact);
+    change.p = std::min(1.0, change.p * static_cast<double>(fitted.data.stations.size()));
+    if (change.p >= best.p) continue;
+    best = std::move(change);
+    order = own;
+  }
+  std::stable_sort(all.begin(), all.end(), by_number);
+  Change of_tool = find(all, Model::kHandEye);
+  const bool is_tool = of_tool.p <= best.p;
+  if (is_tool) {
+    best = std::move(of_tool);
+    order = all;
+  }
+  best.p = std::min(1.0, 2 * best.p);
+  if (best.p >= kSuspicious) return;
+  const auto [which, furthest] = Furthest(best.moves, *result);
+  const auto length = [&](size_t first) {
+    return std::hypot(best.size[first], best.size[first + 1], best.size[first + 2]);
+  };
+  const auto& [t, v] = order[best.place];
+  (furthest > 1 ? result->unreliable : result->warnings)
+      .push_back(Say(kChanged, is_tool ? Say(kTool) : Say(kArtifact), fitted.data.stations[t].views[v].name,
+                     fitted.data.stations[t].name, length(0), length(3), best.F, best.p, which, furthest));
+}
+
+// Of the check lengths: what u, the noise of two poses and the lengths' own uncertainty make of their errors.
+Eigen::MatrixXd CovarianceOfCheck(const ScreenedFit& fitted, const Calibration& result) {
+  const Measurements& data = fitted.data;
+  const Problem& problem = fitted.fit.solution.problem;
+  const std::vector<double> found = Values(problem, fitted.fit.solution.fit.estimate, 0);
+  const std::vector<int> estimated = problem.With({Scope::kSystem}, Role::kEstimate);
+  const auto errors = [&](const std::vector<double>& values) {
+    const std::vector<double> each = SpacingErrors(data, KinematicsOf(values, data.links.size()));
+    return Eigen::VectorXd(Eigen::VectorXd::Map(each.data(), std::ssize(each)));
+  };
+  Eigen::MatrixXd sensitivity(std::ssize(data.check), std::ssize(estimated));
+  for (size_t k = 0; k < estimated.size(); ++k) {
+    const double step = result.Find(problem.quantities[estimated[k]].name)->u;
+    std::vector<double> above = found, below = found;
+    above[estimated[k]] += step;
+    below[estimated[k]] -= step;
+    sensitivity.col(static_cast<Eigen::Index>(k)) = (errors(above) - errors(below)) / (2 * step);
+  }
+  Eigen::MatrixXd covariance = PropagateCovariance(sensitivity, result.covariance);
+  const auto variance = [&](int quantity) { return std::pow(problem.quantities[quantity].u, 2); };
+  const Kinematics setup = fitted.fit.Found();
+  for (size_t k = 0; k < data.check.size(); ++k) {
+    const CheckLength& check = data.check[k];
+    const Eigen::Vector3d ball[2] = {check.first_pose.balls[0].centre, check.second_pose.balls[0].centre};
+    const Eigen::Isometry3d base_from_tool[2] = {BaseFromScanner(data, setup, check.first_pose),
+                                                 BaseFromScanner(data, setup, check.second_pose)};
+    const Eigen::Vector3d along = (base_from_tool[0] * ball[0] - base_from_tool[1] * ball[1]).normalized();
+    double noise = check.u * check.u + 2 * variance(Model::kBall);
+    for (int pose = 0; pose < 2 && check.first_pose.name != check.second_pose.name; ++pose) {
+      const Eigen::Vector3d arm = base_from_tool[pose].linear() * (setup.flange_from_scanner * ball[pose]);
+      noise += variance(Model::kRepeatability) + variance(Model::kRepeatability + 3) * arm.cross(along).squaredNorm();
+    }
+    covariance(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) += noise;
+  }
+  return covariance;
+}
+
+// Poses that took no part, their artifact placed by them.
+void JudgeHeldOut(const ScreenedFit& fitted, Calibration* result) {
+  if (fitted.data.held_out.empty() || !(NoiseDof(*result) >= 1)) return;
+  const Solution& solution = fitted.fit.solution;
+  Measurements data = fitted.data;
+  data.stations = data.held_out;
+  const auto placed = StationsAt(data, fitted.fit.Found());
+  if (!placed.ok()) return;
+  Model model(data.links, data.spheres, data.measured_in_world);
+  for (size_t k = 0; k < solution.problem.quantities.size(); ++k)
+    model.quantity(static_cast<int>(k)) = solution.problem.quantities[k];
+  Problem problem = MakeProblem<Model>(std::make_shared<const Model>(model), *placed);
+  Estimate at = NominalStart(problem);
+  at.system = solution.fit.estimate.system;
+  Weigh(&problem, at);
+  const HeldOutTest test = TestHeldOut(problem, at, result->covariance, NoiseDof(*result));
+  if (test.p < kSuspicious && std::sqrt(test.F) > kMore)
+    result->unreliable.push_back(Say(kHeldOutOff, std::sqrt(test.F), test.F, test.dof1, test.p));
+}
+
+void JudgeCheck(const ScreenedFit& fitted, Calibration* result) {
+  const Measurements& data = fitted.data;
   const LengthCheck& check = result->check;
-  for (size_t k = 0; k < check.after.size(); ++k) {
+  if (check.after.empty()) return;
+  for (size_t k = 0; k < data.check.size(); ++k) {
     if (std::abs(check.after[k]) <= kOtherUnit * data.check[k].distance) continue;
     result->unreliable.push_back(
         Say(kOtherLength, check.names[k].english, data.check[k].distance + check.after[k], data.check[k].distance));
@@ -309,6 +469,16 @@ void JudgeCheck(const Measurements& data, Calibration* result) {
   }
   const double before = SizeOfErrors(check.before).mean, after = SizeOfErrors(check.after).mean;
   if (after > before) result->unreliable.push_back(Say(kWorseThanNominal, after, before));
+  if (!(NoiseDof(*result) >= 1) || data.check.empty()) return;
+  const Eigen::MatrixXd covariance = CovarianceOfCheck(fitted, *result);
+  const auto errors = Eigen::VectorXd::Map(check.after.data(), std::ssize(check.after));
+  const double n = static_cast<double>(check.after.size());
+  const double F = errors.dot(Eigen::LLT<Eigen::MatrixXd>(covariance).solve(errors)) / n, mean = errors.mean(),
+               u_mean = std::sqrt(covariance.sum()) / n, p = 2 * FUpperTail(F, n, NoiseDof(*result)),
+               p_mean = 2 * FUpperTail(std::pow(mean / u_mean, 2), 1, NoiseDof(*result));
+  if (p < kSuspicious && std::sqrt(F) > kMore)
+    result->unreliable.push_back(Say(kLengthsOff, std::sqrt(errors.squaredNorm() / n), std::sqrt(F), std::min(1.0, p)));
+  if (p_mean < kSuspicious) result->unreliable.push_back(Say(kLengthsShifted, mean, u_mean, std::min(1.0, p_mean)));
 }
 
 }  // namespace
@@ -321,9 +491,41 @@ Result<void> CheckPoses(const Measurements& data, const std::string& where, std:
 
 std::optional<WrongBall> FindWrongBall(const Measurements& data) { return BallNames(data).Run(); }
 
-void Judge(const Measurements& data, const JointFit& fit, Calibration* result) {
-  JudgePoses(data, fit, result);
-  JudgeCheck(data, result);
+Result<ScreenedFit> FitScreened(const Measurements& data, const Model& model, int max_iterations) {
+  constexpr int kRounds = 6;
+  SCANCAL_ASSIGN_OR_RETURN(Screened screened, Screen(data));
+  ScreenedFit result{std::move(screened.data), {}, std::move(screened.warnings), 0};
+  const auto count = [](const Measurements& of) {
+    size_t poses = 0;
+    for (const Station& station : of.stations) poses += station.views.size();
+    return poses;
+  };
+  for (int round = 0;; ++round) {
+    SCANCAL_ASSIGN_OR_RETURN(result.fit, FitJointly(result.data, model, screened.hand_eye, max_iterations));
+    result.set_aside = count(data) - count(result.data);
+    if (round == kRounds) break;
+    std::vector<OffPose> off = SetAside(result.data, result.fit, &result.warnings);
+    if (off.empty()) break;
+    std::sort(off.begin(), off.end(), [](const OffPose& a, const OffPose& b) {
+      return std::pair(a.station, a.view) > std::pair(b.station, b.view);
+    });
+    for (const OffPose& pose : off) {
+      std::vector<Model::View>& views = result.data.stations[pose.station].views;
+      views.erase(views.begin() + static_cast<std::ptrdiff_t>(pose.view));
+    }
+    std::erase_if(result.data.stations, [](const Station& station) { return station.views.empty(); });
+  }
+  return result;
+}
+
+void Judge(const ScreenedFit& fitted, Calibration* result) {
+  size_t poses = fitted.set_aside;
+  for (const Station& station : fitted.data.stations) poses += station.views.size();
+  if (static_cast<double>(fitted.set_aside) > kMostSetAside * static_cast<double>(poses))
+    result->unreliable.push_back(Say(kManyOff, fitted.set_aside, poses));
+  JudgeChange(fitted, result);
+  JudgeCheck(fitted, result);
+  JudgeHeldOut(fitted, result);
 }
 
 }  // namespace scancal::robot_ball

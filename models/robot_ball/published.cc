@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 #include "io/progress.h"
-#include "models/robot_ball/fit.h"
+#include "models/robot_ball/judge.h"
 #include "models/robot_ball/scanner.h"
 #include "models/robot_ball/start.h"
 
@@ -220,7 +220,8 @@ std::vector<double> SpacingErrors(const Measurements& data, const Kinematics& se
 }
 
 Result<Comparison> Scanner::Compare(const CompareChoice&) const {
-  const Measurements& data = declaration_.data;
+  SCANCAL_ASSIGN_OR_RETURN(const Screened screened, Screen(declaration_.data));
+  const Measurements& data = screened.data;
   Comparison comparison;
   if (!data.check.empty()) comparison.columns = {{"max/mm"}, {"mean/mm"}};
   for (size_t k = 0; k < data.check.size() && k < kMostPositions; ++k)
@@ -232,9 +233,8 @@ Result<Comparison> Scanner::Compare(const CompareChoice&) const {
                                        {Say(kMu2017), [&] { return Mu2017(data); }},
                                        {Say(kZhou2025), [&] { return Zhou2025(data); }},
                                        {Say(kJoint), [&]() -> Result<Kinematics> {
-                                          SCANCAL_ASSIGN_OR_RETURN(const Kinematics start, InitialHandEye(data));
                                           SCANCAL_ASSIGN_OR_RETURN(const JointFit fit,
-                                                                   FitJointly(data, model_, start.flange_from_scanner));
+                                                                   FitJointly(data, model_, screened.hand_eye));
                                           return fit.Found();
                                         }}};
   for (const Method& method : methods) comparison.rows.push_back(RowOf(data, method));

@@ -1,6 +1,8 @@
 #include "models/robot_ball/scanner.h"
 #include <fmt/format.h>
 #include <cmath>
+#include <limits>
+#include "io/message.h"
 #include "models/chain/tables.h"
 #include "models/robot_ball/fit.h"
 #include "models/robot_ball/judge.h"
@@ -10,11 +12,19 @@
 namespace scancal::robot_ball {
 namespace {
 
+constexpr Message<size_t, std::string_view> kTermsHeld{
+    "robot_ball.terms_held",
+    "{} of what was to be estimated of the joints is not told by these poses and held at zero: {}",
+    "{} der zu schätzenden Größen der Gelenke bestimmen diese Posen nicht; sie sind bei null festgehalten: {}"};
+
+constexpr Message<std::string_view, size_t> kHeldOut{"robot_ball.held_out", "held out: {}, {} poses (mean distance)",
+                                                     "zurückgehalten: {}, {} Posen (mittlerer Abstand)"};
+
 constexpr char kResidual[] = "ball centre";
 
-Eigen::Vector3d MeanOf(const std::vector<Model::SeenBall>& balls) {
+Eigen::Vector3d MeanOnTool(const Measurements& data, const std::vector<Model::SeenBall>& balls) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Model::SeenBall& ball : balls) sum += ball.centre;
+  for (const Model::SeenBall& ball : balls) sum += data.OnTool(ball);
   return sum / static_cast<double>(balls.size());
 }
 
@@ -43,13 +53,14 @@ void AddResiduals(const Measurements& data, const JointFit& fit, size_t t, Targe
 void AddScene(const Measurements& data, const JointFit& fit, size_t t, TargetSummary* target) {
   NumberTable outline = PointTable(), views = SightTable();
   for (const Model::Sphere& sphere : data.spheres) {
+    if (data.measured_in_world) break;  // they are on the tool
     outline.names.push_back(sphere.name);
     AddPoint(fit.BaseFromArtifact(t) * sphere.centre, &outline);
   }
   for (const Model::View& view : fit.stations[t].views) {
     const Eigen::Isometry3d base_from_scanner = BaseFromScanner(data, fit.Found(), view);
     views.names.push_back(view.name);
-    AddSight(base_from_scanner.translation(), base_from_scanner * MeanOf(view.balls), &views);
+    AddSight(base_from_scanner.translation(), base_from_scanner * MeanOnTool(data, view.balls), &views);
   }
   target->scene = {{"outline", outline}, {"views", views}};
 }
@@ -74,6 +85,23 @@ void AddGeometry(const JointFit& fit, Calibration* result) {
   }
 }
 
+// Mean distance of the points of a held-out station from where they lie, its artifact placed by them.
+double MeanDistance(const Measurements& data, const Kinematics& setup, const Station& station) {
+  Measurements held_out = data;
+  held_out.stations = {station};
+  const auto placed = StationsAt(held_out, setup);
+  if (!placed.ok()) return std::numeric_limits<double>::quiet_NaN();
+  double sum = 0, count = 0;
+  for (const Model::View& view : station.views) {
+    const Eigen::Isometry3d base_from_tool = BaseFromScanner(data, setup, view);
+    for (const Model::SeenBall& ball : view.balls) {
+      sum += (base_from_tool * data.OnTool(ball) - placed->front().base_from_artifact * data.InWorld(ball)).norm();
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
 void AddCheck(const Measurements& data, const Kinematics& before, const Kinematics& after, Calibration* result) {
   for (const CheckLength& length : data.check) {
     result->check.names.push_back({length.name});
@@ -81,6 +109,12 @@ void AddCheck(const Measurements& data, const Kinematics& before, const Kinemati
   }
   result->check.before = SpacingErrors(data, before);
   result->check.after = SpacingErrors(data, after);
+  for (const Station& station : data.held_out) {
+    result->check.names.push_back(Say(kHeldOut, station.name, station.views.size()));
+    result->check.u.push_back(0);
+    result->check.before.push_back(MeanDistance(data, before, station));
+    result->check.after.push_back(MeanDistance(data, after, station));
+  }
 }
 
 }  // namespace
@@ -90,19 +124,23 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   if (choice.equal_weights)
     return Error{
         "weights: found equal, but the balls of a pose share its repeatability: they cannot be weighed equally"};
-  const Measurements& data = declaration_.data;
-  SCANCAL_ASSIGN_OR_RETURN(const Kinematics start, InitialHandEye(data));
   const Stopwatch watch;
-  SCANCAL_ASSIGN_OR_RETURN(const JointFit fit,
-                           FitJointly(data, model_, start.flange_from_scanner, choice.max_iterations));
+  const Result<ScreenedFit> screened = FitScreened(declaration_.data, model_, choice.max_iterations);
+  if (!screened.ok()) return InFile(declaration_.dataset, screened.error().message);
+  const Measurements& data = screened->data;
+  const JointFit& fit = screened->fit;
+  std::vector<Sentence> warnings = declaration_.warnings;
+  warnings.insert(warnings.end(), screened->warnings.begin(), screened->warnings.end());
+  if (!fit.held.empty()) warnings.push_back(Say(kTermsHeld, fit.held.size(), Listed(fit.held)));
   const Refined refined{
-      .solution = fit.solution, .residual = kResidual, .seconds = watch.Seconds(), .warnings = declaration_.warnings};
+      .solution = fit.solution, .residual = kResidual, .seconds = watch.Seconds(), .warnings = std::move(warnings)};
   Calibration result = Conclude(declaration_.dataset, refined, choice.monte_carlo);
   AddGeometry(fit, &result);
   AddTables(data, fit, &result);
-  SCANCAL_ASSIGN_OR_RETURN(const Kinematics before, VirtualPointHandEye(data));
+  SCANCAL_ASSIGN_OR_RETURN(const Kinematics before,
+                           data.measured_in_world ? InitialHandEye(data) : VirtualPointHandEye(data));
   AddCheck(data, before, fit.Found(), &result);
-  Judge(data, fit, &result);
+  Judge(*screened, &result);
   return result;
 }
 
@@ -115,6 +153,11 @@ std::string Scanner::Describe() const {
   }
   const std::string arm =
       data.links.empty() ? "poses of the flange as given" : fmt::format("an arm of {} joints", data.links.size());
+  if (data.measured_in_world)
+    return Opening(declaration_.dataset, "robot seen by a tracker, " + arm) +
+           fmt::format("; {} poses, {} sights of {} on the flange; {} poses held out.", poses, balls,
+                       data.spheres.size() == 1 ? "one point" : fmt::format("{} points", data.spheres.size()),
+                       data.held_out.empty() ? 0 : data.held_out.front().views.size());
   return Opening(declaration_.dataset, "robot with a scanner, " + arm) +
          fmt::format("; {} stations, {} poses, {} ball centres of an artifact of {} balls{}.", data.stations.size(),
                      poses, balls, data.spheres.size(),

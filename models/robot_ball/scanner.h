@@ -34,5 +34,6 @@ Result<std::unique_ptr<scancal::Scanner>> Reload(const Dataset& dataset, const J
 Result<int64_t> Transform(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
 
 inline constexpr ScannerKind kKind = {"robot-ball", &Load, &Reload, &Transform};
+inline constexpr ScannerKind kTrackerKind = {kTracker, &Load, &Reload, &Transform};
 
 }  // namespace scancal::robot_ball

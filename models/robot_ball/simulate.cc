@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 #include <cmath>
+#include <span>
 #include "io/json_file.h"
 #include "io/output_file.h"
 #include "io/units.h"
@@ -80,7 +81,7 @@ class Simulation {
  public:
   explicit Simulation(const Scene& scene) : scene_(scene), spheres_(PublishedArtifact()) {
     data_.links = scene.links;
-    truth_ = {scene.flange_from_scanner, scene.link_errors};
+    truth_ = {scene.flange_from_scanner, scene.link_errors, scene.joint_terms};
   }
   Simulated Run() const;
 
@@ -96,9 +97,12 @@ class Simulation {
   }
   PlannedStation PlanStation(int number) const;
   bool TryStation(bool first, Random* random, PlannedStation* station) const;
-  Model::View See(const std::vector<double>& joints, const Eigen::Isometry3d& base_from_artifact,
-                  const std::vector<Model::Sphere>& spheres, Random* noise) const;
-  Station MeasureStation(int number, const PlannedStation& planned) const;
+  // terms: JointTermsAt of the pose.
+  Model::View See(const std::vector<double>& joints, const std::vector<double>& terms,
+                  const Eigen::Isometry3d& base_from_artifact, const std::vector<Model::Sphere>& spheres,
+                  Random* noise) const;
+  // directions: of each joint's last move, pose by pose.
+  Station MeasureStation(int number, const PlannedStation& planned, std::span<const std::vector<int>> directions) const;
   CheckLength Check(int number) const;
 
   const Scene& scene_;
@@ -149,11 +153,19 @@ Simulation::PlannedStation Simulation::PlanStation(int number) const {
   return station;
 }
 
-Model::View Simulation::See(const std::vector<double>& joints, const Eigen::Isometry3d& base_from_artifact,
-                            const std::vector<Model::Sphere>& spheres, Random* noise) const {
-  Model::View view{.name = "", .joints = joints};
+Model::View Simulation::See(const std::vector<double>& joints, const std::vector<double>& terms,
+                            const Eigen::Isometry3d& base_from_artifact, const std::vector<Model::Sphere>& spheres,
+                            Random* noise) const {
+  Model::View view{.name = "", .joints = joints, .terms = terms};
   Eigen::Isometry3d base_from_scanner = BaseFromScanner(data_, truth_, view);
   for (double& x : base_from_scanner.translation()) x += scene_.repeatability * noise->Normal();
+  if (scene_.repeatability_rotation > 0) {
+    Eigen::Vector3d turn;
+    for (double& x : turn) x = scene_.repeatability_rotation * noise->Normal();
+    const Eigen::Translation3d flange((base_from_scanner * truth_.flange_from_scanner.inverse()).translation());
+    base_from_scanner =
+        flange * Eigen::AngleAxisd(turn.norm(), turn.normalized()) * flange.inverse() * base_from_scanner;
+  }
   const Eigen::Isometry3d scanner_from_artifact = base_from_scanner.inverse() * base_from_artifact;
   for (size_t b = 0; b < spheres.size(); ++b) {
     Eigen::Vector3d centre = scanner_from_artifact * spheres[b].centre;
@@ -164,12 +176,15 @@ Model::View Simulation::See(const std::vector<double>& joints, const Eigen::Isom
   return view;
 }
 
-Station Simulation::MeasureStation(int number, const PlannedStation& planned) const {
+Station Simulation::MeasureStation(int number, const PlannedStation& planned,
+                                   std::span<const std::vector<int>> directions) const {
   Random noise(scene_.noise_seed, static_cast<uint64_t>(number) + 1);
   Station station;
   station.name = std::to_string(number + 1);
-  for (const std::vector<double>& joints : planned.joints) {
-    station.views.push_back(See(joints, planned.base_from_artifact, spheres_, &noise));
+  for (size_t v = 0; v < planned.joints.size(); ++v) {
+    const std::vector<double>& joints = planned.joints[v];
+    station.views.push_back(See(joints, JointTermsAt(data_.links, joints, directions[v], data_.gravity),
+                                planned.base_from_artifact, spheres_, &noise));
     station.views.back().name = station.name + "-" + std::to_string(station.views.size());
   }
   return station;
@@ -190,7 +205,8 @@ CheckLength Simulation::Check(int number) const {
       const Eigen::Isometry3d straight = place * Eigen::Translation3d(ball.centre);
       const std::vector<double> joints = Joints(DrawPose(straight, spread, &random), &random);
       if (joints.empty()) break;
-      views.push_back(See(joints, place, {ball}, &noise));
+      const std::vector<int> unknown(joints.size());
+      views.push_back(See(joints, JointTermsAt(data_.links, joints, unknown, data_.gravity), place, {ball}, &noise));
       views.back().name = check.name + (half < 0 ? "-a" : "-b");
     }
     if (views.size() < 2) continue;
@@ -206,12 +222,24 @@ Simulated Simulation::Run() const {
   robot.data.u_spheres = scene_.u_spheres;
   robot.data.ball_diameter = kBallDiameter;
   robot.data.usual_ball_noise = scene_.ball_noise;
+  std::vector<PlannedStation> planned;
+  for (int k = 0; k < scene_.stations; ++k) planned.push_back(PlanStation(k));
+  std::vector<const std::vector<double>*> joints;
+  for (const PlannedStation& station : planned)
+    for (const std::vector<double>& pose : station.joints) joints.push_back(&pose);
+  const std::vector<std::vector<int>> directions = DirectionsOf(joints);
+  size_t first = 0;
+  int number = 0;
   for (int k = 0; k < scene_.stations; ++k) {
-    const PlannedStation planned = PlanStation(k);
-    robot.data.stations.push_back(MeasureStation(k, planned));
-    robot.base_from_artifact.push_back(planned.base_from_artifact);
+    const PlannedStation& station = planned[static_cast<size_t>(k)];
+    robot.data.stations.push_back(
+        MeasureStation(k, station, std::span(directions).subspan(first, station.joints.size())));
+    first += station.joints.size();
+    for (Model::View& view : robot.data.stations.back().views) view.number = number++;
+    robot.base_from_artifact.push_back(station.base_from_artifact);
   }
   for (int k = 0; k < scene_.check_positions; ++k) robot.data.check.push_back(Check(k));
+  SetTerms(&robot.data);
   return robot;
 }
 

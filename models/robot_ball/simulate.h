@@ -50,12 +50,14 @@ struct Scene {
   int translations = 6;  // poses of the first station besides, that only translate from its first one
   PoseConfiguration configuration = PoseConfiguration::kSpatial;
   double field = 92;  // mm from the scanner's origin in which balls are seen: the published field's half diagonal
-  double repeatability = 0.04;  // mm, standard deviation per axis of the flange's position, one error a pose
-  double ball_noise = 0.035;    // mm, standard deviation per axis of a ball centre
-  double u_spheres = 0.001;     // mm: of each coordinate of the artifact's CMM, and of the check distances
-  int check_positions = 10;     // of a scale with two balls
-  uint64_t seed = 1;            // of stations and poses
-  uint64_t noise_seed = 1;      // of all that is measured
+  double repeatability = 0.04;           // mm, standard deviation per axis of the flange's position, one error a pose
+  double repeatability_rotation = 0;     // rad, the same about each axis: the flange turns about its own origin
+  std::vector<double> joint_terms = {};  // what the joints do besides (DeclareJointTerms); none: nothing
+  double ball_noise = 0.035;             // mm, standard deviation per axis of a ball centre
+  double u_spheres = 0.001;              // mm: of each coordinate of the artifact's CMM, and of the check distances
+  int check_positions = 10;              // of a scale with two balls
+  uint64_t seed = 1;                     // of stations and poses
+  uint64_t noise_seed = 1;               // of all that is measured
 };
 
 struct Simulated {

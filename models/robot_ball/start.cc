@@ -43,16 +43,32 @@ MatrixXd Triangle(const MatrixXd& rows) {
   return UpperTriangle(rows);
 }
 
+// The points that a pose saw, as they lie on the tool and in the world. Few reflectors of a tool lie in a plane, which
+// would leave a column of R without effect: a point above the plane of the first three is as rigid as they are.
+std::vector<std::pair<Vector3d, Vector3d>> PointsOf(const Measurements& data, const Model::View& view) {
+  std::vector<std::pair<Vector3d, Vector3d>> points;
+  for (const Model::SeenBall& ball : view.balls) points.emplace_back(data.OnTool(ball), data.InWorld(ball));
+  if (!data.measured_in_world || points.size() < 3) return points;
+  const auto above = [&](auto side) -> Vector3d {
+    const Vector3d a = side(points[1]) - side(points[0]), b = side(points[2]) - side(points[0]);
+    return side(points[0]) + a.cross(b) / std::sqrt(a.cross(b).norm());
+  };
+  points.emplace_back(above([](const auto& point) { return point.first; }),
+                      above([](const auto& point) { return point.second; }));
+  return points;
+}
+
 MatrixXd StationRows(const Measurements& data, const Station& station) {
-  const Index rows = 3 * Balls(station);
+  Index rows = 0;
+  for (const Model::View& view : station.views) rows += 3 * std::ssize(PointsOf(data, view));
   MatrixXd common(rows, kColumns), own(rows, kStationColumns);
   Index row = 0;
   for (const Model::View& view : station.views) {
     const Isometry3d flange = BaseFromScanner(data, {}, view);
-    for (const Model::SeenBall& ball : view.balls) {
+    for (const auto& [on_tool, in_world] : PointsOf(data, view)) {
       for (int l = 0; l < 3; ++l) {
-        common.block<3, 3>(row, kR + 3 * l) = flange.linear() * ball.centre[l];
-        own.block<3, 3>(row, 3 * l) = Matrix3d::Identity() * data.spheres[ball.sphere].centre[l];
+        common.block<3, 3>(row, kR + 3 * l) = flange.linear() * on_tool[l];
+        own.block<3, 3>(row, 3 * l) = Matrix3d::Identity() * in_world[l];
       }
       common.block<3, 3>(row, kT) = flange.linear();
       common.block<3, 1>(row, kFactor) = flange.translation();
@@ -144,12 +160,15 @@ bool OnALine(const MatrixXd& points) {
 Isometry3d BaseFromScanner(const Measurements& data, const Kinematics& setup, const Model::View& view) {
   CHECK(setup.link_errors.empty() || setup.link_errors.size() == data.links.size());
   const std::vector<Link> links = WithErrors(data.links, setup.link_errors);
-  return view.base_from_flange * BaseFromFlange(links, view.joints) * setup.flange_from_scanner;
+  return view.base_from_flange * BaseFromFlange(links, TurnedJoints(view.joints, view.terms, setup.joint_terms)) *
+         setup.flange_from_scanner;
 }
 
 Result<Kinematics> InitialHandEye(const Measurements& data) {
   const MatrixXd rows = AllRows(data);
-  SCANCAL_ASSIGN_OR_RETURN(const Matrix3d rotation, Rotation(data.stations, rows));
+  const bool is_point = data.measured_in_world && data.spheres.size() == 1;  // which has no turn
+  SCANCAL_ASSIGN_OR_RETURN(const Matrix3d rotation,
+                           is_point ? Result<Matrix3d>(Matrix3d::Identity()) : Rotation(data.stations, rows));
   SCANCAL_ASSIGN_OR_RETURN(const Vector3d translation, Translation(data.stations, rows, rotation));
   Kinematics setup;
   setup.flange_from_scanner.linear() = rotation;
@@ -170,9 +189,13 @@ Result<std::vector<Station>> StationsAt(const Measurements& data, const Kinemati
     for (const Model::View& view : station.views) {
       const Isometry3d scanner = BaseFromScanner(data, setup, view);
       for (const Model::SeenBall& ball : view.balls) {
-        on_artifact.col(k) = data.spheres[ball.sphere].centre;
-        in_base.col(k++) = scanner * ball.centre;
+        on_artifact.col(k) = data.InWorld(ball);
+        in_base.col(k++) = scanner * data.OnTool(ball);
       }
+    }
+    if (data.spheres.size() == 1 && !data.measured_in_world) {  // a single ball has a place and no turn
+      station.base_from_artifact.translation() = in_base.rowwise().mean() - data.spheres[0].centre;
+      continue;
     }
     if (OnALine(on_artifact))
       return Error{fmt::format(

@@ -25,8 +25,9 @@ constexpr Message<std::string_view, size_t, std::string_view> kEmptyPoses{
 constexpr double kNormTolerance = 1e-3;  // a quaternion written with four digits
 const std::vector<std::string> kQuaternion = {"qx", "qy", "qz", "qw"};
 
-std::vector<TableColumn> PoseColumns(size_t joints) {
-  std::vector<TableColumn> columns = {{"station"}, {"pose"}};
+std::vector<TableColumn> PoseColumns(size_t joints, bool with_stations) {
+  std::vector<TableColumn> columns = {{"pose"}};
+  if (with_stations) columns.push_back({"station"});
   if (joints > 0) {
     const std::string remedy =
         fmt::format("; robot: links declares {} joints, without it the poses are those of the flange", joints);
@@ -181,10 +182,11 @@ Error SeenTwice(const Observations& observations, size_t row) {
   while (observations.Pose(first) != observations.Pose(row) || observations.Ball(first) != observations.Ball(row))
     ++first;
   return observations.table.Wrong(
-      row, "ball",
+      observations.Row(row), observations.balls.empty() ? observations.ball_column : "pose",
       fmt::format("found {} again in pose {} (it stands also at {}), expected each ball once; name one of them as the "
                   "ball that it is, or remove it",
-                  Quoted(observations.Ball(row)), Quoted(observations.Pose(row)), observations.table.Place(first)));
+                  Quoted(observations.Ball(row)), Quoted(observations.Pose(row)),
+                  observations.table.Place(observations.Row(first))));
 }
 
 }  // namespace
@@ -220,8 +222,9 @@ Result<Artifact> ReadArtifact(const std::filesystem::path& path, const Units& un
   return artifact;
 }
 
-Result<Poses> ReadPoses(const std::filesystem::path& path, const std::vector<Link>& links, const Units& units) {
-  SCANCAL_ASSIGN_OR_RETURN(Table table, Table::Read(path, PoseColumns(links.size()), units));
+Result<Poses> ReadPoses(const std::filesystem::path& path, const std::vector<Link>& links, const Units& units,
+                        bool with_stations) {
+  SCANCAL_ASSIGN_OR_RETURN(Table table, Table::Read(path, PoseColumns(links.size(), with_stations), units));
   if (!links.empty()) SCANCAL_RETURN_IF_ERROR(CheckJoints(table, links.size()));
   Poses poses;
   std::unordered_map<std::string, size_t> stations;
@@ -230,11 +233,13 @@ Result<Poses> ReadPoses(const std::filesystem::path& path, const std::vector<Lin
     Model::View view;
     view.name = name;
     view.joints = JointsOf(table, row, links.size());
+    view.number = static_cast<int>(row);
     if (links.empty()) {
       SCANCAL_ASSIGN_OR_RETURN(view.base_from_flange, FlangeOf(table, row));
     }
-    const size_t station = stations.try_emplace(table.Text("station", row), stations.size()).first->second;
-    if (station == poses.stations.size()) poses.stations.push_back({table.Text("station", row), {}});
+    const std::string of_station = with_stations ? table.Text("station", row) : "world";
+    const size_t station = stations.try_emplace(of_station, stations.size()).first->second;
+    if (station == poses.stations.size()) poses.stations.push_back({of_station, {}});
     std::vector<Model::View>& views = poses.stations[station].views;
     const auto [place, is_new] = poses.places.try_emplace(name, Poses::Place{station, views.size(), row});
     if (!is_new)
@@ -269,6 +274,103 @@ Result<Observations> ReadObservations(const std::filesystem::path& path, const s
   return result;
 }
 
+std::vector<Model::Sphere> SpheresOfTarget() {
+  constexpr double kArm_mm = 100;
+  return {{"origin", Eigen::Vector3d::Zero()},
+          {"x", kArm_mm * Eigen::Vector3d::UnitX()},
+          {"y", kArm_mm * Eigen::Vector3d::UnitY()}};
+}
+
+Result<Observations> ReadTracked(const std::filesystem::path& path, const Units& units) {
+  using enum Dimension;
+  Observations result;
+  result.ball_column = "point";
+  std::vector<TableColumn> columns = {{"pose"},
+                                      {"point", Cells::kText, kNone, false},
+                                      {"x", Cells::kNumber, kLength},
+                                      {"y", Cells::kNumber, kLength},
+                                      {"z", Cells::kNumber, kLength},
+                                      {"u", Cells::kNumberOrNothing, kLength, false}};
+  for (const std::string& part : kQuaternion) columns.push_back({part, Cells::kNumber, kNone, false});
+  SCANCAL_ASSIGN_OR_RETURN(result.table, Table::Read(path, columns, units));
+  const Table& table = result.table;
+  const bool turns =
+      std::all_of(kQuaternion.begin(), kQuaternion.end(), [&](const std::string& part) { return table.Has(part); });
+  if (turns == table.Has("point"))
+    return Error{table.name() +
+                 ": expected the columns point, x, y, z of reflectors, or x, y, z, qx, qy, qz, qw of a "
+                 "6-DoF target, " +
+                 (turns ? "not both" : "found neither")};
+  for (size_t row = 0; row < table.rows(); ++row) {
+    if (turns) {
+      SCANCAL_ASSIGN_OR_RETURN(const Eigen::Isometry3d target, FlangeOf(table, row));
+      for (const Model::Sphere& sphere : SpheresOfTarget()) {
+        result.seen.push_back({target * sphere.centre, Eigen::Matrix3d::Zero()});
+        result.rows.push_back(row);
+        result.balls.push_back(sphere.name);
+      }
+      continue;
+    }
+    SeenCentre& seen = result.seen.emplace_back();
+    seen.centre << table.Number("x", row), table.Number("y", row), table.Number("z", row);
+    if (!table.Has("u")) continue;
+    const double u = table.Number("u", row);
+    if (u <= 0) return table.Wrong(row, "u", "expected a standard uncertainty above 0, or nothing");
+    if (u > 0) seen.covariance = u * u * Eigen::Matrix3d::Identity();  // not of nan
+  }
+  return result;
+}
+
+Result<Shape> ShapeOf(const std::vector<Station>& stations, const std::vector<std::string>& names) {
+  constexpr int kRounds = 5;
+  std::vector<const Model::View*> views;
+  for (const Station& station : stations)
+    for (const Model::View& view : station.views) views.push_back(&view);
+  const auto most = std::max_element(views.begin(), views.end(),
+                                     [](const auto* a, const auto* b) { return a->balls.size() < b->balls.size(); });
+  const auto n = std::ssize(names);
+  if (most == views.end() || std::ssize((*most)->balls) < n)
+    return Error{fmt::format("no pose saw all {} points of the tool, which says where they are on it", n)};
+  Eigen::Matrix3Xd shape(3, n);
+  for (const Model::SeenBall& ball : (*most)->balls) shape.col(ball.sphere) = ball.centre;
+  shape.colwise() -= Eigen::Vector3d(shape.col((*most)->balls.front().sphere));
+  Eigen::VectorXd count = Eigen::VectorXd::Ones(n);
+  double squares = 0, numbers = 0;
+  for (int round = 0; round < kRounds && n > 2; ++round) {
+    Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, n);
+    count.setZero();
+    squares = numbers = 0;
+    for (const Model::View* view : views) {
+      if (view->balls.size() < 3) continue;
+      Eigen::Matrix3Xd seen(3, std::ssize(view->balls)), known = seen;
+      for (size_t b = 0; b < view->balls.size(); ++b) {
+        seen.col(static_cast<Eigen::Index>(b)) = view->balls[b].centre;
+        known.col(static_cast<Eigen::Index>(b)) = shape.col(view->balls[b].sphere);
+      }
+      Eigen::Isometry3d onto = Eigen::Isometry3d::Identity();
+      onto.matrix() = Eigen::umeyama(seen, known, false);
+      for (size_t b = 0; b < view->balls.size(); ++b) {
+        sum.col(view->balls[b].sphere) += onto * view->balls[b].centre;
+        count[view->balls[b].sphere] += 1;
+      }
+      squares += (onto * seen - known).squaredNorm();
+      numbers += 3 * static_cast<double>(view->balls.size()) - 6;
+    }
+    if (count.minCoeff() > 0) shape = sum * count.cwiseInverse().asDiagonal();
+  }
+  if (n == 2) {
+    std::vector<double> apart;
+    for (const Model::View* view : views)
+      if (view->balls.size() == 2) apart.push_back((view->balls[0].centre - view->balls[1].centre).norm());
+    shape.col(1) = shape.col(0) + Median(apart) * Eigen::Vector3d::UnitX();
+  }
+  shape.colwise() -= Eigen::Vector3d(shape.col(0));
+  Shape result;
+  for (Eigen::Index k = 0; k < n; ++k) result.spheres.push_back({names[static_cast<size_t>(k)], shape.col(k)});
+  if (numbers > 0 && n > 2) result.u = std::sqrt(squares / numbers / count.minCoeff());
+  return result;
+}
+
 double UsualNoise(const Observations& observations, double declared) {
   return declared > 0 ? declared : MedianSize(observations);
 }
@@ -282,13 +384,13 @@ Result<void> AttachBalls(const Observations& observations, const std::vector<std
     const std::string &pose_name = observations.Pose(row), &ball_name = observations.Ball(row);
     const auto place = poses->places.find(pose_name);
     if (place == poses->places.end())
-      return observations.table.Wrong(row, "pose",
+      return observations.table.Wrong(observations.Row(row), "pose",
                                       "found " + Quoted(pose_name) + ", which " + poses->table.name() +
                                           " does not have" + Suggestion(pose_name, NamesOf(*poses)));
     const auto ball = indices.find(ball_name);
     if (ball == indices.end())
       return observations.table.Wrong(
-          row, "ball",
+          observations.Row(row), observations.ball_column,
           "found " + Quoted(ball_name) + ", which " + where + " does not have" + Suggestion(ball_name, balls));
     std::vector<Model::SeenBall>& view = poses->View(place->second).balls;
     for (const Model::SeenBall& other : view)

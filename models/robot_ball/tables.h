@@ -29,10 +29,11 @@ struct Poses {
   Model::View& View(const Place& place) { return stations[place.station].views[place.view]; }
 };
 
-// Columns station, pose and q1 .. qn, one a link; without links x, y, z, qx, qy, qz, qw: the flange in the base. Joint
-// angles beyond two turns, or all of some degrees only, are of the other unit and refused, as are quaternions that are
-// not normalised and a pose that is named twice.
-Result<Poses> ReadPoses(const std::filesystem::path& path, const std::vector<Link>& links, const Units& units);
+// Columns station (of the only one, "world", where with_stations is not set), pose and q1 .. qn, one a link; without
+// links x, y, z, qx, qy, qz, qw: the flange in the base. Joint angles beyond two turns, or all of some degrees only,
+// are of the other unit and refused, as are quaternions that are not normalised and a pose that is named twice.
+Result<Poses> ReadPoses(const std::filesystem::path& path, const std::vector<Link>& links, const Units& units,
+                        bool with_stations = true);
 
 struct SeenCentre {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();      // in the scanner's frame, mm
@@ -41,12 +42,18 @@ struct SeenCentre {
 
 struct Observations {
   Table table;
-  std::vector<SeenCentre> seen;              // one a row
+  std::vector<SeenCentre> seen;              // one a row, or some of a row (Row)
   bool fitted = false;                       // to points
   std::vector<std::filesystem::path> files;  // of points
   std::vector<Sentence> warnings;
-  const std::string& Pose(size_t row) const { return table.Text("pose", row); }
-  const std::string& Ball(size_t row) const { return table.Text("ball", row); }
+  std::string ball_column = "ball";
+  std::vector<size_t> rows;        // of the table, one for each of `seen`; empty: they are one a row
+  std::vector<std::string> balls;  // their names; empty: as the table says
+  size_t Row(size_t seen_one) const { return rows.empty() ? seen_one : rows[seen_one]; }
+  const std::string& Pose(size_t seen_one) const { return table.Text("pose", Row(seen_one)); }
+  const std::string& Ball(size_t seen_one) const {
+    return balls.empty() ? table.Text(ball_column, seen_one) : balls[seen_one];
+  }
 };
 
 // Columns pose, ball and x, y, z[, u], or file: points on that ball (columns x, y, z; its path from `folder`), through
@@ -68,6 +75,20 @@ Result<void> AttachBalls(const Observations& observations, const std::vector<std
 // Moves the stations out of the table, without the poses that saw no ball, which are warned of, and without stations
 // that have no other.
 std::vector<Station> TakeSeenStations(Poses* poses, std::vector<Sentence>* warnings);
+
+// What a tracker saw of points on the tool: columns pose, point, x, y, z[, u], or pose and x, y, z, qx, qy, qz, qw of a
+// 6-DoF target, in its own frame; in place of the latter stand three points of the target, SpheresOfTarget.
+Result<Observations> ReadTracked(const std::filesystem::path& path, const Units& units);
+std::vector<Model::Sphere> SpheresOfTarget();  // its origin, and 100 mm along its x and its y
+
+// Points of a tool that nobody measured, in a frame of their own: the shape that all poses saw on average (generalised
+// Procrustes analysis: Gower 1975), its first point at the origin, and the standard uncertainty of a coordinate of it.
+// names: of the points; the stations hold what was seen.
+struct Shape {
+  std::vector<Model::Sphere> spheres;
+  double u = 0;
+};
+Result<Shape> ShapeOf(const std::vector<Station>& stations, const std::vector<std::string>& names);
 
 struct CheckFiles {
   std::filesystem::path poses, observations, distances;

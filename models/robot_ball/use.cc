@@ -25,7 +25,7 @@ Matrix MatrixOf(const Json& json) {
 }
 
 Json PoseJson(const Model::View& pose) {
-  Json json = {{"name", pose.name}, {"joints", pose.joints}, {"balls", Json::array()}};
+  Json json = {{"name", pose.name}, {"number", pose.number}, {"joints", pose.joints}, {"balls", Json::array()}};
   if (pose.joints.empty()) json["base_from_flange"] = Numbers(pose.base_from_flange.matrix());
   for (const Model::SeenBall& ball : pose.balls) {
     Json seen = {{"sphere", ball.sphere}, {"centre", Numbers(ball.centre)}};
@@ -35,11 +35,13 @@ Json PoseJson(const Model::View& pose) {
   return json;
 }
 
-Model::View PoseOfJson(const Json& json, size_t joints, size_t spheres) {
+// number: of a pose of a result that does not say it.
+Model::View PoseOfJson(const Json& json, size_t joints, size_t spheres, int number) {
   Model::View pose;
   pose.name = json.at("name");
   pose.joints = json.at("joints").get<std::vector<double>>();
   if (pose.joints.size() != joints) throw std::out_of_range("joints");
+  pose.number = json.value("number", number);
   if (joints == 0) pose.base_from_flange.matrix() = MatrixOf<Eigen::Matrix4d>(json.at("base_from_flange"));
   for (const Json& each : json.at("balls")) {
     Model::SeenBall& ball = pose.balls.emplace_back();
@@ -49,6 +51,27 @@ Model::View PoseOfJson(const Json& json, size_t joints, size_t spheres) {
     if (each.contains("spread")) ball.spread = MatrixOf<Eigen::Matrix3d>(each["spread"]);
   }
   return pose;
+}
+
+Json StationsJson(const std::vector<Station>& stations) {
+  Json json = Json::array();
+  for (const Station& station : stations) {
+    Json poses = Json::array();
+    for (const Model::View& pose : station.views) poses.push_back(PoseJson(pose));
+    json.push_back({{"name", station.name}, {"poses", poses}});
+  }
+  return json;
+}
+
+std::vector<Station> StationsOf(const Json& json, size_t joints, size_t spheres) {
+  std::vector<Station> stations;
+  int number = 0;
+  for (const Json& each : json) {
+    Station& station = stations.emplace_back();
+    station.name = each.at("name");
+    for (const Json& pose : each.at("poses")) station.views.push_back(PoseOfJson(pose, joints, spheres, number++));
+  }
+  return stations;
 }
 
 Declaration Parsed(const Json& json) {
@@ -63,16 +86,16 @@ Declaration Parsed(const Json& json) {
   if (result.u_of_spheres.size() != data.spheres.size()) throw std::out_of_range("u_of_spheres");
   result.centres_have_u = json.at("centres_have_u");
   for (const Json& each : json.at("warnings")) result.warnings.push_back(SentenceFromJson(each).value());
-  for (const Json& each : json.at("stations")) {
-    Station& station = data.stations.emplace_back();
-    station.name = each.at("name");
-    for (const Json& pose : each.at("poses"))
-      station.views.push_back(PoseOfJson(pose, data.links.size(), data.spheres.size()));
-  }
+  data.stations = StationsOf(json.at("stations"), data.links.size(), data.spheres.size());
+  data.held_out = StationsOf(json.value("held_out", Json::array()), data.links.size(), data.spheres.size());
+  int number = 0;
   constexpr size_t kAny = std::numeric_limits<size_t>::max();  // a length's balls are not of the artifact
-  for (const Json& each : json.at("check"))
-    data.check.push_back({each.at("name"), PoseOfJson(each.at("first"), data.links.size(), kAny),
-                          PoseOfJson(each.at("second"), data.links.size(), kAny), each.at("distance"), each.at("u")});
+  for (const Json& each : json.at("check")) {
+    data.check.push_back({each.at("name"), PoseOfJson(each.at("first"), data.links.size(), kAny, number),
+                          PoseOfJson(each.at("second"), data.links.size(), kAny, number + 1), each.at("distance"),
+                          each.at("u")});
+    number += 2;
+  }
   for (const CheckLength& length : data.check)
     if (length.first_pose.balls.size() != 1 || length.second_pose.balls.size() != 1) throw std::out_of_range("check");
   return result;
@@ -85,6 +108,7 @@ Result<Kinematics> KinematicsOf(const Calibration& calibration, size_t links) {
       ValuesOf(calibration, {"hand_eye_x", "hand_eye_y", "hand_eye_z", "hand_eye_rx", "hand_eye_ry", "hand_eye_rz"}));
   setup.flange_from_scanner = PoseOf(hand_eye);
   SCANCAL_ASSIGN_OR_RETURN(setup.link_errors, LinkErrorsOf(calibration, links));
+  setup.joint_terms = JointTermsOf(calibration, links);
   return setup;
 }
 
@@ -100,15 +124,12 @@ Json ToJson(const Declaration& declaration) {
                {"warnings", Json::array()},
                {"spheres", Json::array()},
                {"stations", Json::array()},
-               {"check", Json::array()}};
+               {"check", Json::array()},
+               {"held_out", StationsJson(data.held_out)}};
   for (const Sentence& warning : declaration.warnings) json["warnings"].push_back(scancal::ToJson(warning));
   for (const Model::Sphere& sphere : data.spheres)
     json["spheres"].push_back({{"name", sphere.name}, {"centre", Numbers(sphere.centre)}});
-  for (const Station& station : data.stations) {
-    Json poses = Json::array();
-    for (const Model::View& pose : station.views) poses.push_back(PoseJson(pose));
-    json["stations"].push_back({{"name", station.name}, {"poses", poses}});
-  }
+  json["stations"] = StationsJson(data.stations);
   for (const CheckLength& length : data.check)
     json["check"].push_back({{"name", length.name},
                              {"first", PoseJson(length.first_pose)},
@@ -147,7 +168,7 @@ Result<int64_t> Transform(const Dataset& dataset, const Calibration& calibration
     for (const Model::View& pose : data.stations[t].views) {
       const Eigen::Isometry3d base_from_scanner = BaseFromScanner(data, setup, pose);
       for (const Model::SeenBall& ball : pose.balls) {
-        const Eigen::Vector3d p = base_from_scanner * ball.centre;
+        const Eigen::Vector3d p = base_from_scanner * data.OnTool(ball);
         in_base.push_back({p.x(), p.y(), p.z()});
       }
     }

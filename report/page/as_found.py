@@ -3,9 +3,16 @@
 E_n = (x_left - x_found) / sqrt(U_left^2 + U_found^2) (ISO 13528): at most 1 in size where the two agree
 within their expanded uncertainties. It holds for independent results only; what speaks against that is told
 with it.
+
+An orientation is compared as a whole: its change is the rotation R_left R_found' between the two, as a vector
+about the axes of the frame that it turns into, and the covariances of both rotation vectors v are taken to it by
+d(rotation) = J(v) dv, J = 1 + (1 - cos t) / t^2 [v]x + (t - sin t) / t^3 [v]x^2, t = |v| (Sola, Deray, Atchuthan,
+A micro Lie theory, 2018, eq. (145)). Vectors near half a turn on either side are neighbours.
 """
 import math
 from dataclasses import dataclass
+
+import numpy as np
 
 from administration import leaves
 from calibration import Calibration
@@ -30,8 +37,10 @@ class Doubt:
 
 def changes(found: Calibration, left: Calibration) -> list[Change]:
     earlier = {parameter["name"]: parameter for parameter in found.estimated}
-    return [_change(earlier[parameter["name"]], parameter) for parameter in left.estimated
-            if parameter["name"] in earlier]
+    turns = {name: change for first in earlier if first.endswith("_rx")
+             for name, change in _turn(first[:-3], found, left).items()}
+    return [turns.get(parameter["name"]) or _change(earlier[parameter["name"]], parameter)
+            for parameter in left.estimated if parameter["name"] in earlier]
 
 
 def doubts(found: Calibration, left: Calibration) -> list[Doubt]:
@@ -58,6 +67,64 @@ def _change(found: dict, left: dict) -> Change:
     expanded = math.hypot(found["U"], left["U"]) if known("U") else 0.0
     return Change(found, left, change, math.hypot(found["u"], left["u"]) if known("u") else None,
                   change / expanded if expanded > 0 else None)
+
+
+def _turn(what: str, found: Calibration, left: Calibration) -> dict[str, Change]:
+    """Of what_rx, _ry, _rz: the rotation from found to left; empty where one of them has not estimated all three."""
+    names = [f"{what}_r{axis}" for axis in "xyz"]
+    both = []
+    for c in (found, left):
+        at = {parameter["name"]: k for k, parameter in enumerate(c.estimated)}
+        if not all(name in at for name in names):
+            return {}
+        rows = [at[name] for name in names]
+        if not np.isfinite(c.covariance[np.ix_(rows, rows)]).all():
+            return {}
+        told = [c.estimated[row] for row in rows]
+        if not all(isinstance(each.get(key), (int, float)) for each in told for key in ("value", "u", "U")):
+            return {}
+        v = np.array([each["value"] for each in told])
+        j = _jacobian(v)
+        k = np.array([each["U"] / each["u"] if each["u"] > 0 else 0.0 for each in told])
+        both.append((told, _rotation(v), j @ c.covariance[np.ix_(rows, rows)] @ j.T, k))
+    (before, r_found, cov_found, k_found), (after, r_left, cov_left, k_left) = both
+    change = _vector(r_left @ r_found.T)
+    variances = [np.diag(cov_found), np.diag(cov_left)]
+    u = np.sqrt(sum(variances))
+    expanded = np.sqrt(k_found**2 * variances[0] + k_left**2 * variances[1])
+    return {name: Change(before[i], after[i], float(change[i]), float(u[i]),
+                         float(change[i] / expanded[i]) if expanded[i] > 0 else None)
+            for i, name in enumerate(names)}
+
+
+def _cross(v: np.ndarray) -> np.ndarray:
+    return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+
+
+def _jacobian(v: np.ndarray) -> np.ndarray:
+    t, x = float(np.linalg.norm(v)), _cross(v)
+    if t < 1e-6:
+        return np.eye(3) + x / 2
+    return np.eye(3) + (1 - math.cos(t)) / t**2 * x + (t - math.sin(t)) / t**3 * x @ x
+
+
+def _rotation(v: np.ndarray) -> np.ndarray:
+    t, x = float(np.linalg.norm(v)), _cross(v)
+    if t < 1e-12:
+        return np.eye(3) + x
+    return np.eye(3) + math.sin(t) / t * x + (1 - math.cos(t)) / t**2 * x @ x
+
+
+def _vector(r: np.ndarray) -> np.ndarray:
+    """Of a rotation; of half a turn either of its two vectors."""
+    axis = np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]]) / 2
+    sine, cosine = float(np.linalg.norm(axis)), (float(np.trace(r)) - 1) / 2
+    t = math.atan2(sine, cosine)
+    if sine > 1e-6 or cosine > 0:
+        return axis * (t / sine if sine > 1e-12 else 1.0)
+    column = max(range(3), key=lambda k: r[k, k])
+    along = r[:, column] + np.eye(3)[:, column]
+    return math.pi * along / np.linalg.norm(along)
 
 
 def _item(c: Calibration) -> str:

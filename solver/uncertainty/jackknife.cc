@@ -1,9 +1,11 @@
 #include "solver/uncertainty/jackknife.h"
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include "solver/dense.h"
 #include "solver/uncertainty/covariance.h"
+#include "solver/uncertainty/gum.h"
 #include "solver/weigh.h"
 
 namespace scancal {
@@ -147,6 +149,87 @@ ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate
     expected.dof[k] = std::pow(covariance.trace(), 2) / covariance.squaredNorm();
   }
   return expected;
+}
+
+std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit, const Linearization& linear,
+                                    double noise_dof) {
+  constexpr double kShared = 1e-4;  // of a direction's information: less is told by the one side only
+  const size_t m = problem.targets.size();
+  std::vector<TargetTest> tests(m);
+  const Eigen::Index n = linear.factor.cols();
+  if (m < 2 || n == 0 || !(noise_dof >= 1)) return tests;
+  // In the coordinates y = factor x all information is the identity.
+  const auto to_y = linear.factor.triangularView<Eigen::Upper>();
+  const auto scored = [&](const Eigen::MatrixXd& scores) -> Eigen::MatrixXd { return to_y.transpose().solve(scores); };
+  Considered considered = ConsideredScores(problem, fit, linear);
+  Eigen::MatrixXd common = Eigen::MatrixXd::Zero(n, considered.common.cols());
+  for (size_t t = 0; t < m; ++t) {
+    considered.own[t] = scored(considered.own[t]);
+    common += considered.common.middleRows(n * static_cast<Eigen::Index>(t), n);
+  }
+  common = scored(common);
+  for (size_t t = 0; t < m; ++t) {
+    const LinearTarget& target = linear.targets[t];
+    if (target.r.size() == 0) continue;
+    const Eigen::MatrixXd rows = scored(target.system_left.transpose());
+    const SymmetricEigen eigen = EigenOf(rows * rows.transpose());
+    std::vector<Eigen::Index> shared;
+    for (Eigen::Index k = 0; k < n; ++k)
+      if (eigen.values[k] > kShared && eigen.values[k] < 1 - kShared) shared.push_back(k);
+    if (shared.empty()) continue;
+    const Eigen::ArrayXd part = eigen.values(shared).array();
+    const Eigen::MatrixXd basis = eigen.vectors(Eigen::all, shared);
+    const Eigen::VectorXd score = basis.transpose() * (rows * target.r);
+    Eigen::MatrixXd covariance = (part * (1 - part)).matrix().asDiagonal();
+    // What moves the scores of target j moves this one's through the joint fit as well.
+    const auto add = [&](const Eigen::MatrixXd& own, const Eigen::MatrixXd& all) {
+      const Eigen::MatrixXd effect = basis.transpose() * own - part.matrix().asDiagonal() * (basis.transpose() * all);
+      covariance += effect * effect.transpose();
+    };
+    for (size_t j = 0; j < m; ++j) add(j == t ? considered.own[j] : 0 * considered.own[j], considered.own[j]);
+    add(scored(considered.common.middleRows(n * static_cast<Eigen::Index>(t), n)), common);
+    TargetTest& test = tests[t];
+    test.dof1 = static_cast<double>(shared.size());
+    test.F = score.dot(Eigen::LLT<Eigen::MatrixXd>(covariance).solve(score)) / test.dof1;
+    test.p = std::min(1.0, static_cast<double>(m) * FUpperTail(test.F, test.dof1, noise_dof));
+    test.moves = to_y.solve(basis * ((1 - part).inverse().matrix().asDiagonal() * score));
+  }
+  return tests;
+}
+
+HeldOutTest TestHeldOut(const Problem& held_out, const Estimate& at, const Eigen::MatrixXd& covariance,
+                        double noise_dof) {
+  HeldOutTest test;
+  if (held_out.targets.empty() || !(noise_dof >= 1)) return test;
+  Problem own = held_out;  // the system as it was found
+  const std::vector<double> found = Values(held_out, at, 0);
+  for (size_t k = 0; k < own.quantities.size(); ++k) {
+    Quantity& quantity = own.quantities[k];
+    if (quantity.scope != Scope::kSystem) continue;
+    quantity.value = found[k];
+    quantity.role = Role::kHold;
+  }
+  own.priors.clear();
+  Estimate there = at;
+  there.targets = Refine(own, {Eigen::VectorXd(0), at.targets}).estimate.targets;
+  const Linearization linear = Linearize(held_out, there, Storey::kViews);
+  const Eigen::Index n = covariance.rows();
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd score = Eigen::VectorXd::Zero(n);
+  double squares = 0;
+  for (size_t t = 0; t < held_out.targets.size(); ++t) {
+    const LinearTarget& target = linear.targets[t];
+    const Eigen::VectorXd left = target.r - target.q * (target.q.transpose() * target.r);
+    squares += left.squaredNorm();
+    score += target.system_left.transpose() * left;
+    information += target.system_left.transpose() * target.system_left;
+    test.dof1 += static_cast<double>(target.r.size() - target.q.cols());
+  }
+  // (I + L S L')^-1 = I - L (I + S L'L)^-1 S L' (Woodbury); S may be singular, L'L, too.
+  const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(n, n) + covariance * information;
+  test.F = (squares - score.dot(inner.partialPivLu().solve(covariance * score))) / test.dof1;
+  test.p = FUpperTail(test.F, test.dof1, noise_dof);
+  return test;
 }
 
 }  // namespace scancal

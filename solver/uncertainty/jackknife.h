@@ -1,6 +1,7 @@
-// Leave one target out: which placement moves which parameter.
+// Leave one target out: which placement moves which parameter, and whether one contradicts the others.
 #pragma once
 #include <Eigen/Core>
+#include <vector>
 #include "solver/refine.h"
 
 namespace scancal {
@@ -29,5 +30,31 @@ struct ExpectedJackknife {
   Eigen::VectorXd dof;       // of a chi-squared with the same mean and spread (Satterthwaite 1946); at most targets - 1
 };
 ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate& fit, const Linearization& linear);
+
+// Does a target contradict the others? Its score at the joint fit, b = L'r with L its rows of the system, against what
+// noise and everything considered make of it (Chow 1960, Econometrica 28, 591, as the score test of Rao 1948): without
+// influences the covariance of b is A_t - A_t A^-1 A_t, and F is the drop of the sum of squares when the target is
+// given system quantities of its own, over its degrees of freedom. Only directions count that both the target and the
+// others determine. The problem is weighed with its noise, of noise_dof degrees of freedom.
+struct TargetTest {
+  double F = 0, dof1 = 0;  // dof1 = 0: it shares nothing with the others
+  double p = 1;            // for this target, among all (Bonferroni)
+  Eigen::VectorXd moves;   // of the system's estimates, without it
+};
+std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit, const Linearization& linear,
+                                    double noise_dof);
+
+// Targets that took no part, against the fit: with their own quantities fitted, their residuals d have the covariance
+// I + L S L' (L their rows of the system, S = covariance the fit's), so that
+//
+//     F = d' (I + L S L')^-1 d / dof1
+//
+// (out-of-sample Chow test; Hamilton, Time Series Analysis, 1994, 8.1). at: the fit of the system, and of the targets'
+// own quantities where they start. The problem is weighed with the noise of the calibration, of noise_dof.
+struct HeldOutTest {
+  double F = 0, dof1 = 0, p = 1;
+};
+HeldOutTest TestHeldOut(const Problem& held_out, const Estimate& at, const Eigen::MatrixXd& covariance,
+                        double noise_dof);
 
 }  // namespace scancal

@@ -78,6 +78,23 @@ Columns ColumnsOf(const Problem& problem, const Estimate& fit, const Linearizati
   return columns;
 }
 
+// All instances of those sources that are considered, times their u. columns: of each source.
+Eigen::MatrixXd ConsideredColumns(const Problem& problem, const std::vector<Source>& sources,
+                                  const std::vector<Columns>& columns, Eigen::Index rows) {
+  Eigen::MatrixXd considered(rows, 0);
+  for (size_t s = 0; s < sources.size(); ++s) {
+    const std::vector<int>& quantities = sources[s].quantities;
+    if (problem.quantities[quantities[0]].role != Role::kConsider) continue;
+    const Eigen::Index before = considered.cols(), more = columns[s].left.cols();
+    Eigen::VectorXd u(more);
+    for (Eigen::Index k = 0; k < more; ++k)
+      u[k] = problem.quantities[quantities[static_cast<size_t>(k) % quantities.size()]].u;
+    considered.conservativeResize(Eigen::NoChange, before + more);
+    considered.rightCols(more) = columns[s].left * u.asDiagonal();
+  }
+  return considered;
+}
+
 Eigen::VectorXd Residuals(const Linearization& linear) {
   Eigen::Index rows = 0;
   for (const LinearTarget& target : linear.targets) rows += target.r.size();
@@ -128,15 +145,8 @@ std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit,
   const Eigen::VectorXd r = Residuals(linear);
   const std::vector<Source> sources = Testable(problem);
   std::vector<Columns> columns;
-  Eigen::MatrixXd considered(r.size(), 0);  // all instances, times their u
-  for (const Source& source : sources) {
-    columns.push_back(ColumnsOf(problem, fit, linear, source));
-    const Quantity& quantity = problem.quantities[source.quantities[0]];
-    if (quantity.role != Role::kConsider) continue;
-    const Eigen::Index before = considered.cols(), more = columns.back().left.cols();
-    considered.conservativeResize(Eigen::NoChange, before + more);
-    considered.rightCols(more) = columns.back().left * quantity.u;
-  }
+  for (const Source& source : sources) columns.push_back(ColumnsOf(problem, fit, linear, source));
+  const Eigen::MatrixXd considered = ConsideredColumns(problem, sources, columns, r.size());
   for (size_t s = 0; s < sources.size(); ++s) {
     if (!(columns[s].length > 0) || columns[s].left.cols() > r.size()) continue;
     const Visible visible = VisibleOf(columns[s], r, considered);
@@ -165,6 +175,72 @@ std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit,
   const double tests = static_cast<double>(misfits.size());
   for (MisfitTest& misfit : misfits) misfit.p = std::min(1.0, misfit.p * tests);
   return misfits;
+}
+
+Change FindChange(const Problem& problem, const Estimate& fit, const Linearization& linear, double noise_dof,
+                  const std::vector<std::pair<size_t, size_t>>& order, const std::vector<int>& quantities) {
+  Change best;
+  const auto n = std::ssize(quantities);
+  if (!(noise_dof >= 1) || n == 0) return best;
+  const Eigen::VectorXd r = Residuals(linear);
+  std::vector<Source> sources = Testable(problem);
+  std::erase_if(sources, [&](const Source& s) { return problem.quantities[s.quantities[0]].role != Role::kConsider; });
+  std::vector<Columns> columns;
+  for (const Source& source : sources) columns.push_back(ColumnsOf(problem, fit, linear, source));
+  const Eigen::MatrixXd considered = ConsideredColumns(problem, sources, columns, r.size());
+  std::vector<Eigen::Index> first;  // row of each target
+  std::vector<std::vector<double>> values;
+  Eigen::Index rows = 0;
+  for (size_t t = 0; t < problem.targets.size(); ++t) {
+    first.push_back(rows);
+    rows += linear.targets[t].r.size();
+    values.push_back(Values(problem, fit, t));
+  }
+  // Sums over the views from a place on: B'B, B'(r, considered), and per target Q'B; over all targets L'B and the sum
+  // of (Q'B)'Q'B. B: the columns of the quantities, L: the target's rows of the system, Q: of its own quantities.
+  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(n, n), explained = squares;
+  Eigen::MatrixXd on_data = Eigen::MatrixXd::Zero(n, 1 + considered.cols());
+  Eigen::MatrixXd on_system = Eigen::MatrixXd::Zero(linear.factor.cols(), n);
+  std::vector<Eigen::MatrixXd> on_own;
+  for (const LinearTarget& target : linear.targets) on_own.push_back(Eigen::MatrixXd::Zero(target.q.cols(), n));
+  const auto upper = linear.factor.triangularView<Eigen::Upper>();
+  double places = 0;
+  for (size_t place = order.size() - 1; place > 0; --place) {
+    const auto [t, v] = order[place];
+    const LinearTarget& target = linear.targets[t];
+    const Block& view = problem.targets[t].views[v];
+    const Eigen::Index at = target.first[v], size = target.first[v + 1] - at;
+    const Eigen::MatrixXd b = view.Weighted(RawDerivatives(view, values[t], quantities));
+    squares += b.transpose() * b;
+    on_data.col(0) += b.transpose() * r.segment(first[t] + at, size);
+    on_data.rightCols(considered.cols()) += b.transpose() * considered.middleRows(first[t] + at, size);
+    on_system += target.system_left.middleRows(at, size).transpose() * b;
+    explained -= on_own[t].transpose() * on_own[t];
+    on_own[t] += target.q.middleRows(at, size).transpose() * b;
+    explained += on_own[t].transpose() * on_own[t];
+    const Eigen::MatrixXd by_system = upper.transpose().solve(on_system);
+    const Eigen::VectorXd scale = squares.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const SymmetricEigen eigen =
+        EigenOf(scale.asDiagonal() * (squares - explained - by_system.transpose() * by_system) * scale.asDiagonal());
+    std::vector<Eigen::Index> seen;
+    for (Eigen::Index k = 0; k < n; ++k)
+      if (eigen.values[k] > kVisible * kVisible) seen.push_back(k);
+    if (seen.empty()) continue;
+    ++places;
+    const Eigen::MatrixXd basis = eigen.vectors(Eigen::all, seen);
+    const Eigen::MatrixXd score = basis.transpose() * scale.asDiagonal() * on_data;
+    Eigen::MatrixXd covariance = eigen.values(seen).asDiagonal();
+    covariance += score.rightCols(considered.cols()) * score.rightCols(considered.cols()).transpose();
+    const double dof = static_cast<double>(seen.size());
+    const double F = score.col(0).dot(Eigen::LLT<Eigen::MatrixXd>(covariance).solve(score.col(0))) / dof;
+    const double p = FUpperTail(F, dof, noise_dof);
+    if (p > best.p || (p == best.p && F < best.F)) continue;
+    const Eigen::VectorXd step =
+        -(scale.asDiagonal() * (basis * score.col(0).cwiseQuotient(eigen.values(seen).eval())));
+    best = {place, F, dof, p, Plain(step), Plain(upper.solve(by_system * step))};
+  }
+  best.p = std::min(1.0, best.p * places);
+  return best;
 }
 
 Neighbours CorrelationOfNeighbours(const Problem& problem, const Estimate& fit, const Linearization& linear) {

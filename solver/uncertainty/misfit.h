@@ -1,5 +1,6 @@
 // What the model leaves out, asked of the residuals.
 #pragma once
+#include <utility>
 #include <vector>
 #include "solver/calibration.h"
 #include "solver/linearize.h"
@@ -14,6 +15,19 @@ namespace scancal {
 // that noise.
 std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit, const Linearization& linear,
                                     double noise_dof);
+
+// Did something change in between? From some view on, in the order of time, these quantities may have had other values:
+// their columns from there on are tested as above, at every place that leaves views on both sides (Andrews 1993,
+// Econometrica 61, 821); what was considered counts as noise. order: target and view.
+struct Change {
+  size_t place = 0;           // in `order`: the first view that is not as before
+  double F = 0, dof1 = 0;     // of the most significant place
+  double p = 1;               // after Bonferroni, for all places that were tried
+  std::vector<double> size;   // per quantity: the step
+  std::vector<double> moves;  // per estimated parameter: what the step has moved it by
+};
+Change FindChange(const Problem& problem, const Estimate& fit, const Linearization& linear, double noise_dof,
+                  const std::vector<std::pair<size_t, size_t>>& order, const std::vector<int>& quantities);
 
 // Are views independent of each other, as everything here counts them? Correlation between neighbouring views of a
 // target, pooled over targets and over everything of view scope: with z_v the whitened residual of view v along the

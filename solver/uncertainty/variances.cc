@@ -5,6 +5,7 @@
 #include <limits>
 #include "solver/dense.h"
 #include "solver/linearize.h"
+#include "solver/uncertainty/gum.h"
 #include "solver/weigh.h"
 
 namespace scancal {
@@ -18,6 +19,7 @@ constexpr double kLargestStep = 25;      // a variance changes by no more than t
 constexpr double kAtZero = 1e-4;         // of a standard error: a variance below this and falling is zero
 constexpr double kConfounded = 1e-8;     // of the largest eigenvalue of the scaled information
 constexpr double kMoreThanDeclared = 3;  // standard errors
+constexpr double kKnown_dof = 1e9;       // as good as infinitely many
 constexpr double kMatters = 0.1;         // of a variance: 5 % of u
 
 // The unit effects of every unknown source on one view's rows, side by side; they hardly change with the estimate.
@@ -384,7 +386,11 @@ Variances EstimateVariances(Problem* problem, Estimate* at, double least) {
       if (quantity.Source() == source && (exceeded.empty() || exceeded.back().source != source))
         exceeded.push_back({source, quantity.u, 0});
   Variances result = EstimateUnknown(problem, at, least);
-  for (Exceeded& each : exceeded) each.estimated = std::sqrt(result.variance[IndexOf(each.source, result.sources)]);
+  for (Exceeded& each : exceeded) {
+    each.estimated = std::sqrt(result.variance[IndexOf(each.source, result.sources)]);
+    each.p =
+        FUpperTail(std::pow(each.estimated / each.declared, 2), std::max(1.0, result.Dof(each.source)), kKnown_dof);
+  }
   result.exceeded = std::move(exceeded);
   Weigh(problem, *at);
   return result;

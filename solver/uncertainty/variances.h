@@ -11,6 +11,7 @@ namespace scancal {
 struct Exceeded {
   std::string source;
   double declared = 0, estimated = 0;
+  double p = 1;  // of an estimate as large, if the declared one were right (chi-squared, with the estimate's dof)
 };
 
 struct Variances {

@@ -107,7 +107,7 @@ TEST_F(MukcaPandaTest, TheCalibrationSaysWhatItKnows) {
   }
   EXPECT_NEAR(ValueOf(result, "theta_4"), -0.0224, 1e-3);  // 1.3 degrees: what makes the nominal robot bad
   EXPECT_EQ(result["check"]["pairs"], 7);
-  EXPECT_THAT(Sentences(result, "warnings"), ::testing::HasSubstr("held out the ball strays"));
+  EXPECT_THAT(Sentences(result, "unreliable"), ::testing::HasSubstr("held out the ball strays"));
 }
 
 }  // namespace

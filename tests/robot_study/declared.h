@@ -22,6 +22,10 @@ inline robot_ball::Model DeclaredModel(const robot_ball::Measurements& data, con
     if (noise == Noise::kEstimated) continue;
     if (source == "ball") consider(k, scene.ball_noise);
     if (source == "repeatability") consider(k, scene.repeatability);
+    if (source == "repeatability_rotation") {
+      model.quantity(k).role = Role::kHold;
+      consider(k, scene.repeatability_rotation);
+    }
   }
   return model;
 }

@@ -224,7 +224,7 @@ TEST_F(FlangeBallFilesTest, TheBallOfEveryPoseIsWrittenInTheBase) {
   ASSERT_TRUE(lines >> p.x() >> comma >> p.y() >> comma >> p.z() >> comma >> scan);
   EXPECT_EQ(scan, 0);
   // The base is the nominal one: what theta_1 and d_1 say.
-  EXPECT_LT((p - scene_.truth.InBase(scene_.tools[0].views[0].joints)).norm(), 3);
+  EXPECT_LT((p - scene_.truth.InBase(scene_.tools[0].views[0])).norm(), 3);
   EXPECT_GT(p.norm(), 100);
 }
 
@@ -265,7 +265,7 @@ TEST(FlangeBallTest, ItsTablesSayWhatTheResultSays) {
     for (size_t v = 0; v < poses.rows.size(); ++v) {
       const Model::View& view = scene.tools[t].views[v];
       EXPECT_EQ(std::vector(poses.rows[v].begin(), poses.rows[v].begin() + 7), view.joints);
-      const Eigen::Vector3d flange = BaseFromFlange(robot.links, view.joints).translation();
+      const Eigen::Vector3d flange = robot.FlangeAt(view).translation();
       EXPECT_LT((Eigen::Vector3d::Map(&poses.rows[v][7]) - flange).norm(), 1e-9);
       EXPECT_EQ(poses.rows[v][10], view.socket);
       const double square = Eigen::Vector3d::Map(&balls.rows[v][1]).squaredNorm();
@@ -273,7 +273,7 @@ TEST(FlangeBallTest, ItsTablesSayWhatTheResultSays) {
       squares += square;
       const std::vector<double>& sight = target.scene.at("views").rows[v];
       EXPECT_LT((Eigen::Vector3d::Map(&sight[0]) - flange).norm(), 1e-9);
-      EXPECT_LT((Eigen::Vector3d::Map(&sight[3]) - robot.InBase(view.joints)).norm(), 1e-9);
+      EXPECT_LT((Eigen::Vector3d::Map(&sight[3]) - robot.InBase(view)).norm(), 1e-9);
     }
     EXPECT_NEAR(std::sqrt(squares / 3 / static_cast<double>(poses.rows.size())), target.rms, 1e-9);
     const auto& sockets = target.scene.at("outline").rows;

@@ -39,7 +39,7 @@ inline std::vector<Link> NominalPanda() {
 // Joint angles near `joints` with the ball at p, by Newton's steps of least norm.
 inline std::vector<double> Reach(const Robot& robot, std::vector<double> joints, const Eigen::Vector3d& p) {
   for (int step = 0; step < 50; ++step) {
-    const Eigen::Vector3d apart = p - robot.InBase(joints);
+    const Eigen::Vector3d apart = p - robot.InBase({joints});
     if (apart.norm() < 1e-11) break;
     Eigen::MatrixXd jacobian(3, joints.size());  // axis x (ball - axis)
     std::vector<Link> before;
@@ -54,7 +54,7 @@ inline std::vector<double> Reach(const Robot& robot, std::vector<double> joints,
     const double length = std::min(1.0, 0.3 / turn.norm());
     for (size_t k = 0; k < joints.size(); ++k) joints[k] += length * turn[static_cast<Eigen::Index>(k)];
   }
-  EXPECT_LT((p - robot.InBase(joints)).norm(), 1e-9);
+  EXPECT_LT((p - robot.InBase({joints})).norm(), 1e-9);
   return joints;
 }
 
@@ -99,7 +99,7 @@ inline Scene MakeScene(const SceneChoice& choice) {
   Random random(choice.seed, 1);
   for (Model::Target& tool : scene.tools) {
     for (Model::View& view : tool.views) {
-      Eigen::Vector3d seat = scene.truth.InBase(view.joints);
+      Eigen::Vector3d seat = scene.truth.InBase(view);
       for (int i = 0; i < 3; ++i) seat[i] += choice.seat * random.Normal();
       view.joints = Reach(scene.truth, view.joints, seat);
       for (double& angle : view.joints) angle += choice.joints * random.Normal();

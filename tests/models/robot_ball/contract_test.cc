@@ -29,6 +29,7 @@ struct RobotCase {
     scene.translations = scene.check_positions = 0;
     scene.ball_noise = kNoise * options.noise;
     scene.repeatability = options.influences ? 0.04 : 0;
+    scene.repeatability_rotation = options.influences ? 2e-4 : 0;
     scene.u_spheres = options.influences ? 0.01 : 0;
     scene.noise_seed = options.seed;
     const Model model(scene.links, {});

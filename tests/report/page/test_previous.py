@@ -1,6 +1,10 @@
 """As found and as left: E_n, and what makes the comparison doubtful."""
+import itertools
+import math
 import tomllib
 import unittest
+
+import numpy as np
 
 from synthetic import calibration, estimated, text_of
 import as_found
@@ -47,6 +51,45 @@ class ChangesTest(unittest.TestCase):
         self.assertIsNone(change.e_n)
         self.assertIsNotNone(change.change)
         self.assertIsNone(as_found.changes(with_parameter(earlier(), 0, value=None), calibration())[0].change)
+
+
+def turned(v, covariance, u=None, **changes):
+    """A calibration with an orientation; v: its rotation vector."""
+    u = np.sqrt(np.diag(covariance)) if u is None else u
+    parameters = [estimated(f"hand_eye_r{axis}", v[k], u[k], "rad") | {"U": 2 * u[k]}
+                  for k, axis in enumerate("xyz")]
+    return earlier(parameters=parameters, covariance=np.asarray(covariance).tolist(), **changes)
+
+
+class OrientationTest(unittest.TestCase):
+    """Compared as the rotation between both."""
+    covariance = np.array([[4.0, 1.0, 0.5], [1.0, 9.0, -2.0], [0.5, -2.0, 1.0]]) * 1e-8
+
+    def test_vectors_on_either_side_of_half_a_turn_are_neighbours(self):
+        for axis in itertools.product((-1, 1), (-0.4, 0.4), (-0.2, 0.2)):
+            axis = np.array(axis) / np.linalg.norm(axis)
+            found, left = (math.pi - 1e-4) * axis, -(math.pi - 2e-4) * axis
+            changes = as_found.changes(turned(found, self.covariance), turned(left, self.covariance))
+            self.assertAlmostEqual(np.linalg.norm([c.change for c in changes]), 3e-4, 9)
+
+    def test_exactly_half_a_turn(self):
+        v = np.array([0.0, math.pi, 0.0])
+        for sign in (1, -1):
+            changes = as_found.changes(turned(v, self.covariance), turned(sign * v, self.covariance))
+            self.assertLess(np.linalg.norm([c.change for c in changes]), 1e-9)
+
+    def test_its_u_is_that_of_many_draws(self):
+        rng = np.random.default_rng(1)
+        v = np.array([1.2, -2.1, 0.7])
+        reference = as_found._rotation(v)
+        draws = rng.multivariate_normal(v, self.covariance, 20000)
+        scatter = np.std([as_found._vector(as_found._rotation(draw) @ reference.T) for draw in draws], axis=0)
+        changes = as_found.changes(turned(v, self.covariance), turned(v, self.covariance))
+        np.testing.assert_allclose([c.u for c in changes], math.sqrt(2) * scatter, rtol=0.03)
+
+    def test_rotations_there_and_back(self):
+        for v in ([0.1, 0.2, -0.3], [1e-9, 0, 0], [2.0, -1.0, 2.0], [0.0, 0.0, math.pi]):
+            np.testing.assert_allclose(np.abs(as_found._vector(as_found._rotation(np.array(v)))), np.abs(v), atol=1e-9)
 
 
 class DoubtsTest(unittest.TestCase):
