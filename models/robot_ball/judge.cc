@@ -34,11 +34,10 @@ constexpr Message<std::string_view, size_t, size_t, std::string_view> kFewBalls{
     "{}: {} Posen sahen weniger als {} Kugeln, zu wenige, um das Normal für sich allein zu verorten: {}"};
 constexpr Message<std::string_view, std::string_view, double, double> kPoseOff{
     "robot_ball.pose_off",
-    "pose {} of station {} is set aside: its balls lie {:.2g} mm off, {:.2g} times the median of all poses; check its "
-    "joint angles and balls",
-    "Pose {} an Station {} ist ausgesondert: Ihre Kugeln liegen um {:.2g} mm daneben, das {:.2g}-Fache des Medians "
-    "aller "
-    "Posen; Gelenkwinkel und Kugeln prüfen"};
+    "pose {} of station {} is set aside: it lies {:.2g} mm off, {:.2g} times the median of all poses; check its joint "
+    "angles and what was seen from it",
+    "Pose {} an Station {} ist ausgesondert: Sie liegt um {:.2g} mm daneben, das {:.2g}-Fache des Medians aller Posen; "
+    "Gelenkwinkel und Beobachtungen prüfen"};
 constexpr Message<size_t, size_t> kManyOff{
     "robot_ball.many_off",
     "{} of {} poses had to be set aside: that is no exception; check the joint angles, and what was seen",
@@ -61,8 +60,14 @@ constexpr Message<Sentence, std::string_view, std::string_view, double, double, 
         "{} steht ab Pose {} an Station {} anders, um {:.2g} mm und {:.2g} rad (F = {:.3g}, p = {:.1g}, korrigiert "
         "für alle geprüften Posen); das verschiebt {} um das {:.2g}-Fache von u: angestoßen oder locker? Nur mit "
         "den Posen einer Seite kalibrieren"};
-constexpr Message<> kTool{"robot_ball.tool", "the scanner on its flange", "Der Scanner an seinem Flansch"};
-constexpr Message<> kArtifact{"robot_ball.artifact", "the artifact (or the base)", "Das Normal (oder die Basis)"};
+constexpr Message<> kScannerOnFlange{"robot_ball.scanner_on_flange", "the scanner on its flange",
+                                     "Der Scanner an seinem Flansch"};
+constexpr Message<> kToolOnFlange{"robot_ball.tool_on_flange", "the tool on its flange",
+                                  "Das Werkzeug an seinem Flansch"};
+constexpr Message<> kArtifactOrBase{"robot_ball.artifact_or_base", "the artifact (or the base)",
+                                    "Das Normal (oder die Basis)"};
+constexpr Message<> kTrackerOrBase{"robot_ball.tracker_or_base", "the tracker (or the base)",
+                                   "Der Tracker (oder die Basis)"};
 constexpr Message<double, double, double> kLengthsOff{
     "robot_ball.lengths_off",
     "check: the known lengths are off by {:.3g} mm rms, {:.2g} times what the uncertainties and the noise explain (p = "
@@ -396,8 +401,11 @@ void JudgeChange(const ScreenedFit& fitted, Calibration* result) {
   };
   const auto& [t, v] = order[best.place];
   (furthest > 1 ? result->unreliable : result->warnings)
-      .push_back(Say(kChanged, is_tool ? Say(kTool) : Say(kArtifact), fitted.data.stations[t].views[v].name,
-                     fitted.data.stations[t].name, length(0), length(3), best.F, best.p, which, furthest));
+      .push_back(Say(kChanged,
+                     fitted.data.measured_in_world ? (is_tool ? Say(kToolOnFlange) : Say(kTrackerOrBase))
+                                                   : (is_tool ? Say(kScannerOnFlange) : Say(kArtifactOrBase)),
+                     fitted.data.stations[t].views[v].name, fitted.data.stations[t].name, length(0), length(3), best.F,
+                     best.p, which, furthest));
 }
 
 // Of the check lengths: what u, the noise of two poses and the lengths' own uncertainty make of their errors.

@@ -365,6 +365,10 @@ Result<Shape> ShapeOf(const std::vector<Station>& stations, const std::vector<st
     shape.col(1) = shape.col(0) + Median(apart) * Eigen::Vector3d::UnitX();
   }
   shape.colwise() -= Eigen::Vector3d(shape.col(0));
+  if (n > 2) {  // the frame is the tool's own, whatever pose came first
+    const Eigen::Vector3d x = shape.col(1).normalized(), z = x.cross(shape.col(2)).normalized();
+    shape = (Eigen::Matrix3d() << x, z.cross(x), z).finished().transpose() * shape;
+  }
   Shape result;
   for (Eigen::Index k = 0; k < n; ++k) result.spheres.push_back({names[static_cast<size_t>(k)], shape.col(k)});
   if (numbers > 0 && n > 2) result.u = std::sqrt(squares / numbers / count.minCoeff());

@@ -82,8 +82,9 @@ Result<Observations> ReadTracked(const std::filesystem::path& path, const Units&
 std::vector<Model::Sphere> SpheresOfTarget();  // its origin, and 100 mm along its x and its y
 
 // Points of a tool that nobody measured, in a frame of their own: the shape that all poses saw on average (generalised
-// Procrustes analysis: Gower 1975), its first point at the origin, and the standard uncertainty of a coordinate of it.
-// names: of the points; the stations hold what was seen.
+// Procrustes analysis: Gower 1975), and the standard uncertainty of a coordinate of it. The frame: the first point at
+// the origin, the second on x, the third in the plane of x and y. names: of the points; the stations hold what was
+// seen.
 struct Shape {
   std::vector<Model::Sphere> spheres;
   double u = 0;

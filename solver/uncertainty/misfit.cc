@@ -205,6 +205,8 @@ Change FindChange(const Problem& problem, const Estimate& fit, const Linearizati
   for (const LinearTarget& target : linear.targets) on_own.push_back(Eigen::MatrixXd::Zero(target.q.cols(), n));
   const auto upper = linear.factor.triangularView<Eigen::Upper>();
   double places = 0;
+  const size_t least = std::max<size_t>(4, order.size() / 20);
+  if (order.size() < 2 * least) return best;
   for (size_t place = order.size() - 1; place > 0; --place) {
     const auto [t, v] = order[place];
     const LinearTarget& target = linear.targets[t];
@@ -218,6 +220,7 @@ Change FindChange(const Problem& problem, const Estimate& fit, const Linearizati
     explained -= on_own[t].transpose() * on_own[t];
     on_own[t] += target.q.middleRows(at, size).transpose() * b;
     explained += on_own[t].transpose() * on_own[t];
+    if (std::min(place, order.size() - place) < least) continue;
     const Eigen::MatrixXd by_system = upper.transpose().solve(on_system);
     const Eigen::VectorXd scale = squares.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const SymmetricEigen eigen =

@@ -17,8 +17,9 @@ std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit,
                                     double noise_dof);
 
 // Did something change in between? From some view on, in the order of time, these quantities may have had other values:
-// their columns from there on are tested as above, at every place that leaves views on both sides (Andrews 1993,
-// Econometrica 61, 821); what was considered counts as noise. order: target and view.
+// their columns from there on are tested as above, at every place that leaves a twentieth of the views on either side,
+// and four (Andrews 1993, Econometrica 61, 821: nearer to the ends a few outliers decide); what was considered counts
+// as noise. order: target and view.
 struct Change {
   size_t place = 0;           // in `order`: the first view that is not as before
   double F = 0, dof1 = 0;     // of the most significant place
