@@ -29,7 +29,7 @@ bool KeepEveryPoint(const char*, const std::string& value) {
 Result<int> Propagated(const std::string& file) {
   SCANCAL_ASSIGN_OR_RETURN(const Units units, ParseUnits(FLAGS_units));
   SCANCAL_ASSIGN_OR_RETURN(const Rechecked checked, RecheckForUse(file));
-  const Calibration& calibration = checked.found;
+  const Calibration& calibration = checked.again ? *checked.again : checked.found;  // the same, and more of it
   SCANCAL_ASSIGN_OR_RETURN(const ScannerKind* kind, FindScannerKind(calibration.model, file + ": model"));
   SCANCAL_ASSIGN_OR_RETURN(const Propagation propagation,
                            kind->Propagate(calibration, {TypedPoints(), FLAGS_points_file, units}, FLAGS_distance));

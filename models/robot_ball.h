@@ -4,6 +4,7 @@
 #include <ceres/rotation.h>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 #include "models/chain/chain.h"
@@ -115,8 +116,9 @@ struct CheckLength {
 
 // What a data set holds once it is read: mm, rad, no files.
 struct Measurements {
-  std::vector<Link> links;         // none: the poses of the flange are given
-  bool measured_in_world = false;  // the spheres are on the tool, the stations are the world's (one)
+  std::vector<Link> links;                    // none: the poses of the flange are given
+  bool measured_in_world = false;             // the spheres are on the tool, the stations are the world's (one)
+  std::optional<Eigen::Isometry3d> hand_eye;  // where all of it is held
   Eigen::Vector3d gravity = -Eigen::Vector3d::UnitZ();  // its direction in the base
   std::vector<Model::Sphere> spheres;
   double u_spheres = 0;           // standard uncertainty of each coordinate of their centres, mm

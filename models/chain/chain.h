@@ -124,7 +124,7 @@ std::vector<int> JointsOfTerms(int links);
 // JointTermsAt of it, or empty: nothing is added.
 template <class T>
 void AddJointTerms(const std::vector<double>& at, const T* terms, const std::vector<int>& joints, T* errors) {
-  for (size_t k = 0; k < at.size(); ++k)
+  for (size_t k = 0; k < joints.size() && !at.empty(); ++k)
     if (at[k] != 0 && !IsZero(terms[k])) errors[kLinkNumbers * joints[k]] += at[k] * terms[k];
 }
 

@@ -1,5 +1,6 @@
 // A robot in the tables of a result, and what a result says of its links. mm, rad.
 #pragma once
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,5 +29,17 @@ Result<std::vector<Link>> LinkErrorsOf(const Calibration& calibration, size_t li
 
 // What the joints do besides (DeclareJointTerms), of all links; those that the calibration does not have are zero.
 std::vector<double> JointTermsOf(const Calibration& calibration, size_t links);
+
+// Nominal links of a result (Parameter::nominal); empty: of poses that were given.
+std::vector<Link> NominalLinksOf(const Calibration& calibration);
+
+// Points of a tool at joint angles q1 .. qn, in the base, with the uncertainty of the calibration: derivatives by
+// central differences over a tenth of each u. point: in the base, of the parameters' values by name, the pose's joints
+// and terms, and the last three numbers of a reading (x, y, z; mm). The sense of the last move is not known here:
+// backlash is left out.
+using PointOfTool = std::function<Eigen::Vector3d(const std::function<double(const std::string&)>& value,
+                                                  const std::vector<double>& joints, const Eigen::Vector3d& at)>;
+Result<Propagation> PropagateTool(const Calibration& calibration, const PointRequest& points, bool distances,
+                                  const PointOfTool& point);
 
 }  // namespace scancal

@@ -170,6 +170,21 @@ Result<void> TakeHeldOut(const CheckFiles& files, const std::filesystem::path& f
   return {};
 }
 
+// The hand-eye, where the data set holds all six numbers of it.
+std::optional<Eigen::Isometry3d> HeldHandEye(const Dataset& dataset) {
+  Eigen::Matrix<double, 6, 1> numbers;
+  int held = 0;
+  const Model model({}, {});
+  for (const ParameterSetting& setting : dataset.parameters) {
+    const int k = Find(model.quantities(), setting.name) - Model::kHandEye;
+    if (k < 0 || k >= 6 || setting.role != "hold" || !setting.value) continue;
+    numbers[k] = *setting.value * UnitFactor(model.quantities()[k].unit, dataset.units);
+    ++held;
+  }
+  if (held < 6) return std::nullopt;
+  return PoseOf(numbers);
+}
+
 // All that dataset.yaml itself says.
 Result<Files> TakeYaml(const Dataset& dataset, Declaration* result) {
   result->dataset = dataset;
@@ -177,6 +192,7 @@ Result<Files> TakeYaml(const Dataset& dataset, Declaration* result) {
   const Files files = ReadFiles(dataset.yaml, dataset.file.parent_path(), result->data.measured_in_world);
   result->data.links = ReadLinks(dataset.yaml, dataset.units);
   result->data.gravity = ReadGravity(dataset.yaml);
+  result->data.hand_eye = HeldHandEye(dataset);
   result->data.ball_diameter = DiameterOf(dataset.yaml, dataset.units);
   result->links = ReadLinkSetting(dataset);
   SCANCAL_RETURN_IF_ERROR(dataset.yaml.Finish());

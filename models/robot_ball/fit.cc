@@ -44,7 +44,7 @@ Kinematics KinematicsOf(const std::vector<double>& values, size_t joints) {
 }
 
 Result<JointFit> FitJointly(const Measurements& data, const Model& model, const Eigen::Isometry3d& hand_eye,
-                            int max_iterations) {
+                            int max_iterations, bool equal_weights) {
   std::vector<double> start;
   for (const Quantity& quantity : model.quantities()) start.push_back(quantity.value);
   Vector6d::Map(&start[Model::kHandEye]) = NumbersOf(hand_eye);
@@ -62,6 +62,10 @@ Result<JointFit> FitJointly(const Measurements& data, const Model& model, const 
       {"station", "its balls do not determine where the artifact stands; they need three that are not in a line",
        "these poses, which may turn about too few directions"}));
   if (IsBeyondHalfATurn(plain)) plain = Solve(plain.problem, WithinHalfATurn(plain), {max_iterations});
+  if (equal_weights) {
+    fit.solution = std::move(plain);
+    return fit;
+  }
   fit.solution = SolveWeighted(plain, kLeastSigma_mm, {max_iterations});
   if (IsBeyondHalfATurn(fit.solution)) {  // the weights move it across
     plain = Solve(plain.problem, WithinHalfATurn(fit.solution), {max_iterations});

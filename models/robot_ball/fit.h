@@ -24,8 +24,10 @@ struct JointFit {
 // (StationsAt).
 //
 // An Error names what the data do not determine.
+//
+// equal_weights: all balls weigh alike, and no variance is estimated.
 Result<JointFit> FitJointly(const Measurements& data, const Model& model, const Eigen::Isometry3d& hand_eye,
-                            int max_iterations = 100);
+                            int max_iterations = 100, bool equal_weights = false);
 
 struct Gauged {
   Kinematics setup;

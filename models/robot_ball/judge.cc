@@ -114,6 +114,7 @@ Result<void> CheckReach(const Measurements& data, const std::string& where) {
 
 // What the poses of each station turn v by, rms over the poses: singular values of (R_i - R_1) v.
 Result<void> CheckTurns(const Measurements& data, const std::string& where, std::vector<Sentence>* warnings) {
+  if (data.hand_eye) return {};  // nothing is left open
   std::vector<Eigen::Matrix3d> turns;
   for (const Station& station : data.stations) {
     const Eigen::Matrix3d first = FlangeOf(data, station.views.front()).linear();
@@ -499,7 +500,7 @@ Result<void> CheckPoses(const Measurements& data, const std::string& where, std:
 
 std::optional<WrongBall> FindWrongBall(const Measurements& data) { return BallNames(data).Run(); }
 
-Result<ScreenedFit> FitScreened(const Measurements& data, const Model& model, int max_iterations) {
+Result<ScreenedFit> FitScreened(const Measurements& data, const Model& model, int max_iterations, bool equal_weights) {
   constexpr int kRounds = 6;
   SCANCAL_ASSIGN_OR_RETURN(Screened screened, Screen(data));
   ScreenedFit result{std::move(screened.data), {}, std::move(screened.warnings), 0};
@@ -509,7 +510,8 @@ Result<ScreenedFit> FitScreened(const Measurements& data, const Model& model, in
     return poses;
   };
   for (int round = 0;; ++round) {
-    SCANCAL_ASSIGN_OR_RETURN(result.fit, FitJointly(result.data, model, screened.hand_eye, max_iterations));
+    SCANCAL_ASSIGN_OR_RETURN(result.fit,
+                             FitJointly(result.data, model, screened.hand_eye, max_iterations, equal_weights));
     result.set_aside = count(data) - count(result.data);
     if (round == kRounds) break;
     std::vector<OffPose> off = SetAside(result.data, result.fit, &result.warnings);

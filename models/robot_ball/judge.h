@@ -51,7 +51,8 @@ struct ScreenedFit {
   std::vector<Sentence> warnings;
   size_t set_aside = 0;
 };
-Result<ScreenedFit> FitScreened(const Measurements& data, const Model& model, int max_iterations = 100);
+Result<ScreenedFit> FitScreened(const Measurements& data, const Model& model, int max_iterations = 100,
+                                bool equal_weights = false);
 
 // Unreliable: many poses that had to be set aside (one wrong joint angle spoils links and hand-eye, and would pass as
 // repeatability); known lengths that the calibration makes worse, misses by a tenth, or by more than its uncertainty,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <set>
 #include "io/message.h"
@@ -395,7 +396,7 @@ void DropCopies(const std::string& where, Measurements* data, std::vector<Senten
   std::stable_sort(by_first.begin(), by_first.end(), [&](size_t a, size_t b) { return key(a) < key(b); });
   const double pairs = 0.5 * static_cast<double>(poses.size()) * static_cast<double>(poses.size() - 1);
   std::set<std::pair<size_t, size_t>> copies;
-  std::vector<std::string> names;
+  std::map<int, std::string> named;  // by the copy's number
   for (size_t i = 0; i < by_first.size(); ++i)
     for (size_t j = i + 1; j < by_first.size() && key(by_first[j]) - key(by_first[i]) <= resolution.noise; ++j) {
       const auto [kept, copy] =
@@ -404,9 +405,11 @@ void DropCopies(const std::string& where, Measurements* data, std::vector<Senten
           !IsCopy(view(kept), view(copy), resolution, pairs))
         continue;
       copies.insert({poses[copy].station, poses[copy].view});
-      names.push_back(view(copy).name + " of " + view(kept).name);
+      named[view(copy).number] = view(copy).name + " of " + view(kept).name;
     }
   if (copies.empty()) return;
+  std::vector<std::string> names;
+  for (const auto& [number, name] : named) names.push_back(name);
   warnings->push_back(Say(kCopies, where, copies.size(), poses.size(), Listed(names)));
   Remove(copies, data);
 }

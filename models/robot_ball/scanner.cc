@@ -1,5 +1,6 @@
 #include "models/robot_ball/scanner.h"
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include "io/message.h"
@@ -77,8 +78,14 @@ void AddTables(const Measurements& data, const JointFit& fit, Calibration* calib
   AddNominal(data.links, calibration);
 }
 
-void AddGeometry(const JointFit& fit, Calibration* result) {
+void AddGeometry(const JointFit& fit, const Eigen::Vector3d& gravity, Calibration* result) {
   result->frames["hand_eye"] = fit.Found().flange_from_scanner.matrix();
+  if (std::any_of(result->estimated.begin(), result->estimated.end(),
+                  [](const std::string& name) { return name.starts_with("gravity"); })) {
+    Eigen::Isometry3d down = Eigen::Isometry3d::Identity();  // its translation is the direction of gravity
+    down.translation() = gravity;
+    result->frames["gravity"] = down.matrix();
+  }
   for (size_t t = 0; t < result->targets.size(); ++t) {
     const Eigen::Matrix<double, 6, 1> pose = NumbersOf(fit.BaseFromArtifact(t));
     result->targets[t].geometry = {{"base_from_artifact", {pose.data(), pose.data() + 6}}};
@@ -121,11 +128,10 @@ void AddCheck(const Measurements& data, const Kinematics& before, const Kinemati
 
 Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   SCANCAL_RETURN_IF_ERROR(CheckOnlyResidual(choice, kResidual));
-  if (choice.equal_weights)
-    return Error{
-        "weights: found equal, but the balls of a pose share its repeatability: they cannot be weighed equally"};
+  SCANCAL_RETURN_IF_ERROR(CheckMonteCarlo(choice, !choice.equal_weights));
   const Stopwatch watch;
-  const Result<ScreenedFit> screened = FitScreened(declaration_.data, model_, choice.max_iterations);
+  const Result<ScreenedFit> screened =
+      FitScreened(declaration_.data, model_, choice.max_iterations, choice.equal_weights);
   if (!screened.ok()) return InFile(declaration_.dataset, screened.error().message);
   const Measurements& data = screened->data;
   const JointFit& fit = screened->fit;
@@ -135,7 +141,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   const Refined refined{
       .solution = fit.solution, .residual = kResidual, .seconds = watch.Seconds(), .warnings = std::move(warnings)};
   Calibration result = Conclude(declaration_.dataset, refined, choice.monte_carlo);
-  AddGeometry(fit, &result);
+  AddGeometry(fit, data.gravity, &result);
   AddTables(data, fit, &result);
   SCANCAL_ASSIGN_OR_RETURN(const Kinematics before,
                            data.measured_in_world ? InitialHandEye(data) : VirtualPointHandEye(data));

@@ -33,7 +33,10 @@ Result<std::unique_ptr<scancal::Scanner>> Reload(const Dataset& dataset, const J
 // Every ball centre in the base; scan: the number of its station.
 Result<int64_t> Transform(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
 
-inline constexpr ScannerKind kKind = {"robot-ball", &Load, &Reload, &Transform};
-inline constexpr ScannerKind kTrackerKind = {kTracker, &Load, &Reload, &Transform};
+// Points of the scanner, or of the tool, at joint angles: columns q1 .. qn, x, y, z.
+Result<Propagation> Propagate(const Calibration& calibration, const PointRequest& points, bool distances);
+
+inline constexpr ScannerKind kKind = {"robot-ball", &Load, &Reload, &Transform, &Propagate};
+inline constexpr ScannerKind kTrackerKind = {kTracker, &Load, &Reload, &Transform, &Propagate};
 
 }  // namespace scancal::robot_ball

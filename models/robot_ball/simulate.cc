@@ -103,7 +103,8 @@ class Simulation {
                   Random* noise) const;
   // directions: of each joint's last move, pose by pose.
   Station MeasureStation(int number, const PlannedStation& planned, std::span<const std::vector<int>> directions) const;
-  CheckLength Check(int number) const;
+  // directions: of the two poses, if known.
+  CheckLength Check(int number, std::span<const std::vector<int>> directions) const;
 
   const Scene& scene_;
   std::vector<Model::Sphere> spheres_;  // truth
@@ -190,7 +191,7 @@ Station Simulation::MeasureStation(int number, const PlannedStation& planned,
   return station;
 }
 
-CheckLength Simulation::Check(int number) const {
+CheckLength Simulation::Check(int number, std::span<const std::vector<int>> directions) const {
   Random random(scene_.seed, kCheckStreams + number), noise(scene_.noise_seed, kCheckStreams + number);
   const PoseSpread spread = SpreadOf(PoseConfiguration::kSpatial);
   CheckLength check;
@@ -205,8 +206,10 @@ CheckLength Simulation::Check(int number) const {
       const Eigen::Isometry3d straight = place * Eigen::Translation3d(ball.centre);
       const std::vector<double> joints = Joints(DrawPose(straight, spread, &random), &random);
       if (joints.empty()) break;
-      const std::vector<int> unknown(joints.size());
-      views.push_back(See(joints, JointTermsAt(data_.links, joints, unknown, data_.gravity), place, {ball}, &noise));
+      const std::vector<int> direction =
+          directions.empty() ? std::vector<int>(joints.size()) : directions[views.size()];
+      views.push_back(See(joints, JointTermsAt(data_.links, joints, direction, data_.gravity), place, {ball}, &noise));
+      views.back().number = 2 * number + (half > 0);
       views.back().name = check.name + (half < 0 ? "-a" : "-b");
     }
     if (views.size() < 2) continue;
@@ -238,7 +241,15 @@ Simulated Simulation::Run() const {
     for (Model::View& view : robot.data.stations.back().views) view.number = number++;
     robot.base_from_artifact.push_back(station.base_from_artifact);
   }
-  for (int k = 0; k < scene_.check_positions; ++k) robot.data.check.push_back(Check(k));
+  for (int k = 0; k < scene_.check_positions; ++k) robot.data.check.push_back(Check(k, {}));
+  joints.clear();  // which pose comes next is known only now
+  for (const CheckLength& check : robot.data.check)
+    joints.insert(joints.end(), {&check.first_pose.joints, &check.second_pose.joints});
+  const std::vector<std::vector<int>> of_check = DirectionsOf(joints);
+  std::vector<CheckLength> moved;
+  for (int k = 0; k < scene_.check_positions; ++k)
+    moved.push_back(Check(k, std::span(of_check).subspan(2 * static_cast<size_t>(k), 2)));
+  robot.data.check = std::move(moved);
   SetTerms(&robot.data);
   return robot;
 }

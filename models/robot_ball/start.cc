@@ -165,6 +165,7 @@ Isometry3d BaseFromScanner(const Measurements& data, const Kinematics& setup, co
 }
 
 Result<Kinematics> InitialHandEye(const Measurements& data) {
+  if (data.hand_eye) return Kinematics{*data.hand_eye, std::vector<Link>(data.links.size())};
   const MatrixXd rows = AllRows(data);
   const bool is_point = data.measured_in_world && data.spheres.size() == 1;  // which has no turn
   SCANCAL_ASSIGN_OR_RETURN(const Matrix3d rotation,

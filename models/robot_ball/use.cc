@@ -7,6 +7,9 @@
 namespace scancal::robot_ball {
 namespace {
 
+constexpr const char* kHandEyeNames[] = {"hand_eye_x",  "hand_eye_y",  "hand_eye_z",
+                                         "hand_eye_rx", "hand_eye_ry", "hand_eye_rz"};
+
 template <class Matrix>
 Json Numbers(const Matrix& matrix) {  // row by row
   Json json = Json::array();
@@ -103,9 +106,8 @@ Declaration Parsed(const Json& json) {
 
 Result<Kinematics> KinematicsOf(const Calibration& calibration, size_t links) {
   Kinematics setup;
-  SCANCAL_ASSIGN_OR_RETURN(
-      const Eigen::VectorXd hand_eye,
-      ValuesOf(calibration, {"hand_eye_x", "hand_eye_y", "hand_eye_z", "hand_eye_rx", "hand_eye_ry", "hand_eye_rz"}));
+  SCANCAL_ASSIGN_OR_RETURN(const Eigen::VectorXd hand_eye,
+                           ValuesOf(calibration, {std::begin(kHandEyeNames), std::end(kHandEyeNames)}));
   setup.flange_from_scanner = PoseOf(hand_eye);
   SCANCAL_ASSIGN_OR_RETURN(setup.link_errors, LinkErrorsOf(calibration, links));
   setup.joint_terms = JointTermsOf(calibration, links);
@@ -176,6 +178,29 @@ Result<int64_t> Transform(const Dataset& dataset, const Calibration& calibration
     points += std::ssize(in_base);
   }
   return points;
+}
+
+Result<Propagation> Propagate(const Calibration& calibration, const PointRequest& points, bool distances) {
+  const std::vector<Link> nominal = NominalLinksOf(calibration);
+  Quantities links, terms;
+  DeclareLinks(nominal.size(), &links);
+  DeclareJointTerms(nominal.size(), &terms);
+  const auto gravity = calibration.frames.find("gravity");
+  const Eigen::Vector3d down = gravity == calibration.frames.end() ? Eigen::Vector3d(-Eigen::Vector3d::UnitZ())
+                                                                   : Eigen::Vector3d(gravity->second.col(3).head<3>());
+  const std::vector<int> unknown(nominal.size());
+  return PropagateTool(
+      calibration, points, distances,
+      [&](const auto& value, const std::vector<double>& joints, const Eigen::Vector3d& at) {
+        std::vector<double> errors, of_terms;
+        for (const Quantity& quantity : links) errors.push_back(value(quantity.name));
+        for (const Quantity& quantity : terms) of_terms.push_back(value(quantity.name));
+        Eigen::Matrix<double, 6, 1> hand_eye;
+        for (int k = 0; k < 6; ++k) hand_eye[k] = value(kHandEyeNames[k]);
+        const Eigen::VectorXd numbers = Eigen::VectorXd::Map(errors.data(), std::ssize(errors));
+        const std::vector<double> turned = TurnedJoints(joints, JointTermsAt(nominal, joints, unknown, down), of_terms);
+        return Eigen::Vector3d(BaseFromFlange(WithErrors(nominal, LinksOf(numbers)), turned) * (PoseOf(hand_eye) * at));
+      });
 }
 
 }  // namespace scancal::robot_ball

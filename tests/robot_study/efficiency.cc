@@ -23,6 +23,8 @@ VectorXd Estimated(const Quantities& quantities, const robot_ball::Kinematics& s
   VectorXd::Map(&values[robot_ball::Model::kHandEye], 6) = robot_ball::NumbersOf(setup.flange_from_scanner);
   VectorXd::Map(&values[robot_ball::Model::kLinks], kLinkNumbers * std::ssize(setup.link_errors)) =
       NumbersOf(setup.link_errors);
+  std::copy(setup.joint_terms.begin(), setup.joint_terms.end(),
+            values.begin() + robot_ball::Model::kLinks + kLinkNumbers * std::ssize(setup.link_errors));
   std::vector<double> estimated;
   for (size_t k = 0; k < quantities.size(); ++k)
     if (quantities[k].scope == Scope::kSystem && quantities[k].role == Role::kEstimate) estimated.push_back(values[k]);

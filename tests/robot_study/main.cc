@@ -66,9 +66,13 @@ bool PrintEfficiency(size_t runs) {
       "| width / oracle: mean | failed | holds |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- "
       "|\n");
   bool all_hold = true;
-  for (const auto& [name, scene, noise] : {std::tuple{"declared", exact_artifact, Noise::kDeclared},
-                                           {"estimated", exact_artifact, Noise::kEstimated},
-                                           {"declared, artifact with u", robot_ball::Scene{}, Noise::kDeclared}}) {
+  for (const auto& [name, scene, noise] :
+       {std::tuple{"declared", exact_artifact, Noise::kDeclared},
+        {"estimated", exact_artifact, Noise::kEstimated},
+        {"declared, artifact with u", robot_ball::Scene{}, Noise::kDeclared},
+        {"poses turn, too: estimated", WithRotation(exact_artifact), Noise::kEstimated},
+        {"gravity estimated", WithGravity(exact_artifact), Noise::kDeclared},
+        {"backlash estimated", WithBacklash(exact_artifact), Noise::kDeclared}}) {
     const Efficiency e = StudyEfficiency(scene, noise, runs, kThreads);
     // With an uncertain artifact the bound, which knows it, is out of reach for what does not estimate the artifact.
     const bool holds = (scene.u_spheres > 0 || e.ratio.mean() < kMostRatio) && e.coverage.mean() >= kLeastCoverage &&

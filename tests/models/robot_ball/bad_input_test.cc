@@ -196,7 +196,11 @@ TEST_F(RobotBadInputTest, KeysOfTheDataSet) {
   more_ = "ball_diameter: -1\n";
   EXPECT_THAT(Error(), HasSubstr("ball_diameter: found \"-1\", expected a diameter above 0"));
   more_ = "check: {poses: a.csv, observations: b.csv}\n";
-  EXPECT_THAT(Error(), HasSubstr("the key 'distances' is missing"));
+  EXPECT_THAT(Error(), HasSubstr("a.csv"));  // whole poses held out
+  more_ = "check: {every: 1}\n";
+  EXPECT_THAT(Error(), HasSubstr("every: found \"1\", expected a whole number, 2 or more"));
+  more_ = "check: {every: 2, poses: a.csv}\n";
+  EXPECT_THAT(Error(), HasSubstr("unknown key 'poses'"));
   more_ = "";
   Replace("a: 25", "r: 25", &robot_);
   EXPECT_THAT(Error(), AllOf(HasSubstr("robot: links: item 1: the key 'a' is missing")));

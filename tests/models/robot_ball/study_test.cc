@@ -36,6 +36,20 @@ TEST(RobotStudy, RefinementReachesTheBound) {
   }
 }
 
+TEST(RobotStudy, WhatJointsDoBesidesIsEstimatedAsWellAsCanBe) {
+  robot_ball::Scene exact;
+  exact.u_spheres = 0;
+  for (const auto& [scene, noise] : {std::pair{WithRotation(exact), Noise::kEstimated},
+                                     {WithGravity(exact), Noise::kDeclared},
+                                     {WithBacklash(exact), Noise::kDeclared}}) {
+    const Efficiency e = StudyEfficiency(scene, noise, 60, kThreads);
+    EXPECT_EQ(e.failed, 0);
+    EXPECT_NEAR(e.ratio.mean(), 1, 4 * e.u_of_ratio);
+    EXPECT_NEAR(e.coverage.mean(), 0.95, 0.03);
+    EXPECT_NEAR(e.width.mean(), 1, 0.07);
+  }
+}
+
 TEST(RobotStudy, SpatialPosesAreBestCollinearOnesWorst) {
   const std::vector<Reconstruction> results = StudyConfigurations({}, 60, kThreads);
   ASSERT_EQ(results.size(), 3);
