@@ -37,14 +37,19 @@ constexpr Message<std::string_view, double, double> kDeclaredTooSmall{
     "solver.declared_too_small",
     "{}: declared with u = {:.3g}, but the residuals show {:.3g} (mm, rad); the larger one is used",
     "{}: angegeben mit u = {:.3g}, die Residuen zeigen jedoch {:.3g} (mm, rad); der größere Wert wird verwendet"};
-constexpr Message<std::string_view, double, double, double, double> kDeclaredExcluded{
+constexpr Message<std::string_view, double, double, double, Sentence> kDeclaredExcluded{
     "solver.declared_excluded",
-    "{}: declared with u = {:.3g}, but the residuals show {:.3g} (mm, rad), {:.2g} times as much (p = {:.1g}): the "
-    "data "
+    "{}: declared with u = {:.3g}, but the residuals show {:.3g} (mm, rad), {:.2g} times as much ({}): the data "
     "contradict the declaration, or the model lacks something; declare what holds here, or estimate",
-    "{}: angegeben mit u = {:.3g}, die Residuen zeigen jedoch {:.3g} (mm, rad), das {:.2g}-Fache (p = {:.1g}): Die "
-    "Daten "
+    "{}: angegeben mit u = {:.3g}, die Residuen zeigen jedoch {:.3g} (mm, rad), das {:.2g}-Fache ({}): Die Daten "
     "widersprechen der Angabe, oder dem Modell fehlt etwas; angeben, was hier gilt, oder estimate"};
+constexpr Message<std::string_view, double, Sentence> kDeclaredNone{
+    "solver.declared_none",
+    "{}: declared with u = 0, but the residuals show {:.3g} (mm, rad; {}): the data contradict the declaration, or the "
+    "model lacks something; declare what holds here, or estimate",
+    "{}: angegeben mit u = 0, die Residuen zeigen jedoch {:.3g} (mm, rad; {}): Die Daten widersprechen der Angabe, "
+    "oder "
+    "dem Modell fehlt etwas; angeben, was hier gilt, oder estimate"};
 constexpr Message<std::string_view, double, double, double, Sentence, size_t, std::string_view, double, size_t>
     kTargetContradicts{
         "solver.target_contradicts",
@@ -171,8 +176,11 @@ void JudgeNeighbours(const Solution& solution, Calibration* result) {
 
 void JudgeVariances(const Variances& variances, Calibration* result) {
   for (const auto& [source, declared, estimated, p] : variances.exceeded) {
-    if (p < kSuspicious && estimated > kExcluded * declared) {
-      result->unreliable.push_back(Say(kDeclaredExcluded, source, declared, estimated, estimated / declared, p));
+    if (p < kSuspicious && declared == 0) {
+      result->unreliable.push_back(Say(kDeclaredNone, source, estimated, Chance(p)));
+    } else if (p < kSuspicious && estimated > kExcluded * declared) {
+      result->unreliable.push_back(
+          Say(kDeclaredExcluded, source, declared, estimated, estimated / declared, Chance(p)));
     } else {
       result->warnings.push_back(Say(kDeclaredTooSmall, source, declared, estimated));
     }

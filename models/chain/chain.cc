@@ -76,6 +76,7 @@ std::vector<int> JointsOfTerms(int links) {
 std::vector<double> JointTermsAt(const std::vector<Link>& links, const std::vector<double>& joints,
                                  const std::vector<int>& direction, const Eigen::Vector3d& gravity) {
   CHECK_EQ(links.size(), joints.size());
+  constexpr double kRounding = 1e-9;
   const auto n = std::ssize(links);
   std::vector<Eigen::Vector3d> axis, origin, end;
   ChainFrame<double> frame = MakeChainFrame<double>(Eigen::Isometry3d::Identity());
@@ -90,7 +91,10 @@ std::vector<double> JointTermsAt(const std::vector<Link>& links, const std::vect
   }
   std::vector<double> at;
   for (std::ptrdiff_t i = 0; i < n; ++i)
-    for (std::ptrdiff_t k = i; k < n; ++k) at.push_back(axis[i].dot((end[k] - origin[i]).cross(gravity)) / reach);
+    for (std::ptrdiff_t k = i; k < n; ++k) {
+      const double moment = axis[i].dot((end[k] - origin[i]).cross(gravity)) / reach;
+      at.push_back(std::abs(moment) > kRounding ? moment : 0);  // of a mass on the axis, or an axis along gravity
+    }
   for (const int each : direction) at.push_back(each);
   for (const double q : joints) at.push_back(q);
   for (const double q : joints)

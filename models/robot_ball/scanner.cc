@@ -15,9 +15,8 @@ namespace {
 
 constexpr Message<size_t, std::string_view> kTermsHeld{
     "robot_ball.terms_held",
-    "{} of what was to be estimated of the joints is not told by these poses and held at zero: {}",
-    "{} der zu schätzenden Größen der Gelenke bestimmen diese Posen nicht; sie sind bei null festgehalten: {}"};
-
+    "{} terms of the joints that were to be estimated are not told by these poses, and held at zero: {}",
+    "{} zu schätzende Größen der Gelenke bestimmen diese Posen nicht; sie sind bei null festgehalten: {}"};
 constexpr Message<std::string_view, size_t> kHeldOut{"robot_ball.held_out", "held out: {}, {} poses (mean distance)",
                                                      "zurückgehalten: {}, {} Posen (mittlerer Abstand)"};
 

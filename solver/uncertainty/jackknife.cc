@@ -180,7 +180,8 @@ std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit,
     const Eigen::ArrayXd part = eigen.values(shared).array();
     const Eigen::MatrixXd basis = eigen.vectors(Eigen::all, shared);
     const Eigen::VectorXd score = basis.transpose() * (rows * target.r);
-    Eigen::MatrixXd covariance = (part * (1 - part)).matrix().asDiagonal();
+    const Eigen::VectorXd of_noise = part * (1 - part);
+    Eigen::MatrixXd covariance = of_noise.asDiagonal();
     // What moves the scores of target j moves this one's through the joint fit as well.
     const auto add = [&](const Eigen::MatrixXd& own, const Eigen::MatrixXd& all) {
       const Eigen::MatrixXd effect = basis.transpose() * own - part.matrix().asDiagonal() * (basis.transpose() * all);
@@ -190,9 +191,10 @@ std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit,
     add(scored(considered.common.middleRows(n * static_cast<Eigen::Index>(t), n)), common);
     TargetTest& test = tests[t];
     test.dof1 = static_cast<double>(shared.size());
-    test.F = score.dot(Eigen::LLT<Eigen::MatrixXd>(covariance).solve(score)) / test.dof1;
+    const Eigen::VectorXd whitened = Eigen::LLT<Eigen::MatrixXd>(covariance).solve(score);
+    test.F = score.dot(whitened) / test.dof1;
     test.p = std::min(1.0, static_cast<double>(m) * FUpperTail(test.F, test.dof1, noise_dof));
-    test.moves = to_y.solve(basis * ((1 - part).inverse().matrix().asDiagonal() * score));
+    test.moves = to_y.solve(basis * ((1 - part).inverse().matrix().asDiagonal() * of_noise.cwiseProduct(whitened)));
   }
   return tests;
 }

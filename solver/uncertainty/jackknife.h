@@ -39,7 +39,9 @@ ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate
 struct TargetTest {
   double F = 0, dof1 = 0;  // dof1 = 0: it shares nothing with the others
   double p = 1;            // for this target, among all (Bonferroni)
-  Eigen::VectorXd moves;   // of the system's estimates, without it
+  // Of the system's estimates without it, as far as nothing that was considered explains them (what of the score is left
+  // after its best prediction from what was considered).
+  Eigen::VectorXd moves;
 };
 std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit, const Linearization& linear,
                                     double noise_dof);

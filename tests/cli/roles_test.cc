@@ -165,7 +165,7 @@ TEST_F(RolesTest, DeclaredNoiseAloneIsNotTraceable) {
 TEST_F(RolesTest, NoNoiseIsADeclarationThatResidualsMayContradict) {
   Simulate(Path("noisy"), {"--profiles=60", "--points=60", "--encoder_jitter=0.01", "--line_correlation=10"});
   Append(Path("noisy") / "dataset.yaml", "influences: {encoder_jitter: 0, line_correlation: 1}\n");
-  EXPECT_THAT(Sentences(Refined(Path("noisy")), "warnings"),
+  EXPECT_THAT(Sentences(Refined(Path("noisy"), 2), "unreliable"),
               AllOf(HasSubstr("encoder_jitter: declared with u = 0, but the residuals show"),
                     HasSubstr("line_correlation (offset): declared with u = 0, but the residuals show")));
   EXPECT_EQ(Sentences(With("influences: {encoder_jitter: 0, line_correlation: 1}"), "warnings"), "");

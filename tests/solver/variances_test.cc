@@ -123,8 +123,11 @@ TEST(Variances, DeclaredOnesAreKeptUnlessTheResidualsShowMore) {
   EXPECT_NEAR(careless.variances->exceeded[0].estimated, 0.3, 0.1);
   EXPECT_EQ(careless.variances->exceeded[0].estimated, careless.problem.quantities[LineModel::kShift].u);
   const Calibration result = Summarize(careless, {});
-  ASSERT_EQ(result.warnings.size(), 1U);
-  EXPECT_EQ(result.warnings[0].english.find("shift: declared with u = 0.05"), 0U) << result.warnings[0];
+  ASSERT_EQ(result.unreliable.size(), 1U);  // six times as much is no chance
+  EXPECT_EQ(result.unreliable[0].english.find("shift: declared with u = 0.05"), 0U) << result.unreliable[0];
+  roles.u_shift = 0.2;  // the sum of thirty squares is 2.2 times as large now and then
+  const Calibration doubted = Summarize(Weighted(LineProblem(scene.Make(), roles)), {});
+  EXPECT_TRUE(doubted.unreliable.empty());
 }
 
 TEST(Variances, AllDeclaredMeansInfiniteDegreesOfFreedom) {
