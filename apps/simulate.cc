@@ -24,6 +24,19 @@ DEFINE_double(encoder_sin1, 0, "turntable: the same, a quarter turn on, deg");
 DEFINE_double(encoder_cos2, 0, "turntable: error of the encoder, twice a turn, deg");
 DEFINE_double(encoder_sin2, 0, "turntable: the same, an eighth of a turn on, deg");
 DEFINE_double(expansion, 0, "turntable: relative expansion of the mount, which moves M and N");
+DEFINE_double(linearity_3, 0, "turntable: the same with its cube, mm at the ends");
+DEFINE_double(lens_z2, 0, "turntable: error of depth with the square of z, mm at the ends of the line");
+DEFINE_double(lens_yz, 0, "turntable: the same with depth times z");
+DEFINE_double(lens_yz2, 0, "turntable: the same with depth times the square of z");
+DEFINE_double(range_offset, 0, "turntable: offset of the range, mm");
+DEFINE_double(range_scale, 0, "turntable: relative scale error of the range, of depth and line alike");
+DEFINE_double(encoder_scale, 0, "turntable: relative error of the angle, true = shown (1 - this)");
+DEFINE_bool(back, false, "turntable: the second half of the profiles sweeps back");
+DEFINE_double(drift_sweep, 0, "turntable: by which the depth that is shown grows over each sweep, mm");
+DEFINE_double(drift, 0, "turntable: by which the depth that is shown grows over all sweeps, mm");
+DEFINE_double(angle_step, 0, "turntable: to which the written angle is rounded, deg; 0: not");
+DEFINE_double(profile_offset, 0, "turntable: standard deviation of an error of depth common to a profile, mm");
+DEFINE_double(profile_correlation, 0, "turntable: of that between neighbouring profiles");
 DEFINE_int32(placements, 3, "turntable: placements of the plate");
 DEFINE_int32(profiles, 200, "turntable: profiles per placement");
 DEFINE_int32(points, 200, "turntable: points per profile");
@@ -87,6 +100,12 @@ int RunTurntable() {
   scene.line_length = FLAGS_line_length;
   scene.noise_y = FLAGS_noise;
   scene.line_correlation = FLAGS_line_correlation;
+  scene.back = FLAGS_back;
+  scene.drift_sweep = FLAGS_drift_sweep;
+  scene.drift = FLAGS_drift;
+  scene.angle_step = FLAGS_angle_step * kDegree;
+  scene.profile_offset = FLAGS_profile_offset;
+  scene.profile_correlation = FLAGS_profile_correlation;
   scene.encoder_jitter = FLAGS_encoder_jitter * kDegree;
   scene.form = FLAGS_form;
   scene.form_kind = FLAGS_form_kind == "modes"    ? turntable::FormKind::kModes
@@ -144,9 +163,12 @@ struct Simulator {
 std::vector<Simulator> Simulators() {
   std::vector<CommandFlag> turntable;
   for (const Quantity& quantity : SystemQuantities()) turntable.push_back({quantity.name.c_str()});
-  for (const char* name : {"placements", "profiles", "points", "sweep", "line_length", "noise", "line_correlation",
-                           "encoder_jitter", "form", "form_kind", "one_plate", "outliers", "background", "missing",
-                           "search_width_M", "search_width_N", "format"})
+  for (
+      const char* name :
+      {"placements",     "profiles",  "points",      "sweep",    "line_length", "noise",          "line_correlation",
+       "encoder_jitter", "back",      "drift_sweep", "drift",    "angle_step",  "profile_offset", "profile_correlation",
+       "form",           "form_kind", "one_plate",   "outliers", "background",  "missing",        "search_width_M",
+       "search_width_N", "format"})
     turntable.push_back({name});
   return {{"turntable", turntable, &RunTurntable},
           {"robot-ball",

@@ -53,36 +53,42 @@ Model::Model(Residuals residuals) : residuals_(residuals) {
   for (const char* name : {"encoder_cos1", "encoder_sin1", "encoder_cos2", "encoder_sin2"})
     declare(name, Unit::kRad, kSystem, Role::kHold, false);
   declare("expansion", Unit::kOne, kSystem, Role::kHold, true);
+  for (const char* name : {"linearity_3", "lens_z2", "lens_yz", "lens_yz2", "range_offset"})
+    declare(name, Unit::kMm, kSystem, Role::kHold, false);
+  declare("range_scale", Unit::kOne, kSystem, Role::kHold, true);
+  declare("encoder_scale", Unit::kOne, kSystem, Role::kHold, false);
   declare("normal_1", Unit::kRad, kTarget, Role::kEstimate, true);
   declare("normal_2", Unit::kRad, kTarget, Role::kEstimate, true);
   declare("distance", Unit::kMm, kTarget, Role::kEstimate, true);
   // Of these `estimate` means their variance.
   declare("encoder_jitter", Unit::kRad, kView, Role::kEstimate, false);
+  declare("backlash", Unit::kRad, kSystem, Role::kHold, false);
+  declare("latency", Unit::kRad, kSystem, Role::kHold, false);
+  for (int k = 0; k < kRunOuts; ++k)
+    declare(("runout_" + std::to_string(k + 1)).c_str(), Unit::kMm, kSystem, Role::kHold, false, "runout");
+  for (int k = 0; k < kRunOuts; ++k)
+    declare(("wobble_" + std::to_string(k + 1)).c_str(), Unit::kRad, kSystem, Role::kHold, false, "wobble");
   declare("line_offset", Unit::kMm, kView, Role::kEstimate, false, "line_correlation (offset)");
   declare("line_slope", Unit::kRad, kView, Role::kEstimate, false, "line_correlation (slope)");
+  for (const int k : {kEncoderJitter, kLineOffset, kLineSlope}) quantities_[static_cast<size_t>(k)].in_order = true;
   declare("noise_y", Unit::kMm, kPoint, Role::kEstimate, false);
   declare("noise_z", Unit::kMm, kPoint, Role::kHold, false);
+  for (const char* name : {"drift_sweep", "drift", "warm_up", "drift_temperature"})
+    declare(name, Unit::kMm, kSystem, Role::kHold, false);
   for (int k = 0; k < kFormModes; ++k)
     declare(("form_" + std::to_string(k + 1)).c_str(), Unit::kMm, kTarget, Role::kHold, false, "form");
 }
 
 namespace {
 
-// n . P - d = A + Y y + Z z + B bend of a profile, or what these become by a change.
+// n . P - d = A + Y y + Z z + B bend (mm) of a profile, or what these become by a change.
 struct Four {
   double A = 0, Y = 0, Z = 0, B = 0;
 };
 
-// What all profiles of a placement share: the plane's normal with its derivatives, and the columns of Ry Rx.
+// What all profiles of a placement share: the plane's normal with its derivatives.
 struct Placed {
-  Placed(const Model::Target& plane, const double* q)
-      : cx(std::cos(q[Model::kTiltX])),
-        sx(std::sin(q[Model::kTiltX])),
-        cy(std::cos(q[Model::kTiltY])),
-        sy(std::sin(q[Model::kTiltY])),
-        distance(plane.distance + q[Model::kDistance]) {
-    depth = {sy * sx, cx, cy * sx};
-    height = {sy * cx, -sx, cy * cx};
+  Placed(const Model::Target& plane, const double* q) : distance(plane.distance + q[Model::kDistance]) {
     const Eigen::Vector3d turn = q[Model::kNormal1] * plane.e1 + q[Model::kNormal2] * plane.e2;
     Rotate(turn.data(), plane.normal, normal.data());
     // The normal is v cos t + (w x v) sin(t) / t, w its rotation vector of length t across v.
@@ -96,8 +102,8 @@ struct Placed {
       leans[k] = -sinc * along * plane.normal + sinc * e.cross(plane.normal) + bent * along * turn.cross(plane.normal);
     }
   }
-  double cx, sx, cy, sy, distance;
-  Eigen::Vector3d depth, height, normal;
+  double distance;
+  Eigen::Vector3d normal;
   std::array<Eigen::Vector3d, 2> leans;  // d normal / d normal_1, normal_2
 };
 
@@ -107,9 +113,10 @@ class ProfileDerivatives {
  public:
   ProfileDerivatives(const Placed& placed, const double* q) : placed_(placed), q_(q), in_table_(0, q) {}
 
-  void TurnTo(double alpha) {
-    alpha_ = alpha;
-    in_table_.TurnTo(alpha, q_);
+  void TurnTo(const Model::View& profile) {
+    alpha_ = profile.alpha;
+    motion_ = profile.motion;
+    in_table_.TurnTo(alpha_, q_, motion_);
     n_ = in_table_.TurnedBack(placed_.normal);
   }
 
@@ -121,27 +128,38 @@ class ProfileDerivatives {
 
   Four By(int quantity) const {
     const double growth = 1 + q_[Model::kExpansion];
+    if (quantity >= Model::kRunOut && quantity < Model::kLineOffset) {
+      constexpr std::array kOf = {Model::kM, Model::kN, Model::kTiltX, Model::kTiltY};
+      const int k = quantity - Model::kRunOut;
+      return Times(Harmonic(k % 4, alpha_), By(kOf[static_cast<size_t>(k / 4)]));
+    }
     switch (quantity) {
       case Model::kM:
         return {-n_[0] * growth};
       case Model::kN:
         return {n_[1] * growth};
       case Model::kExpansion:
-        return {n_[1] * q_[Model::kN] - n_[0] * q_[Model::kM]};
+        return {n_.dot(in_table_.origin) / growth};
       case Model::kTiltX:
-        return Tilted(n_.dot(placed_.height), -n_.dot(placed_.depth));
+        return Tilted(n_.dot(Height()), -n_.dot(Depth()));
       case Model::kTiltY: {  // n . dRy/d(tilt_y), of what the tilt about X leaves along Z
-        const double across = n_[0] * placed_.cy - n_[2] * placed_.sy;
-        return Tilted(across * placed_.sx, across * placed_.cx);
+        const double across = n_[0] * in_table_.cy - n_[2] * in_table_.sy;
+        return Tilted(across * in_table_.sx, across * in_table_.cx);
       }
       case Model::kScaleY:
-        return {0, n_.dot(placed_.depth)};
+        return {0, n_.dot(Depth())};
       case Model::kScaleZ:
-        return {0, 0, n_.dot(placed_.height)};
+        return {0, 0, n_.dot(Height())};
+      case Model::kRangeScale:
+        return {0, n_.dot(Depth()), n_.dot(Height())};
       case Model::kShear:
-        return {0, 0, n_.dot(placed_.depth)};
-      case Model::kLinearity:
-        return {0, 0, 0, n_.dot(placed_.depth)};
+        return {0, 0, n_.dot(Depth())};
+      case Model::kEncoderScale:
+        return Turned(-alpha_);
+      case Model::kBacklash:
+        return Turned(-motion_.direction / 2);
+      case Model::kLatency:
+        return Turned(-motion_.speed);
       case Model::kEncoderJitter:
         return Turned(-1);
       case Model::kEncoderCos1:
@@ -162,18 +180,25 @@ class ProfileDerivatives {
 
  private:
   Four Along(const Eigen::Vector3d& m) const {
-    return {m.dot(in_table_.origin), m.dot(in_table_.along_y), m.dot(in_table_.along_z), m.dot(in_table_.along_bend)};
+    return {m.dot(in_table_.origin), m.dot(in_table_.along_y), m.dot(in_table_.along_z), m.dot(Depth())};
+  }
+  const Eigen::Vector3d& Depth() const { return in_table_.along_depth; }
+  Eigen::Vector3d Height() const { return {in_table_.sy * in_table_.cx, -in_table_.sx, in_table_.cy * in_table_.cx}; }
+  static Four Times(double factor, const Four& four) {
+    return {factor * four.A, factor * four.Y, factor * four.Z, factor * four.B};
   }
   Four Turned(double da) const { return Along({-n_[1] * da, n_[0] * da, 0}); }
   // By a change of the columns (depth, height) that is so long along n.
   Four Tilted(double of_depth, double of_height) const {
-    return {0, of_depth * (1 + q_[Model::kScaleY]), of_height * (1 + q_[Model::kScaleZ]) + of_depth * q_[Model::kShear],
-            of_depth * q_[Model::kLinearity]};
+    const double range = q_[Model::kRangeScale];
+    return {0, of_depth * (1 + q_[Model::kScaleY] + range),
+            of_height * (1 + q_[Model::kScaleZ] + range) + of_depth * q_[Model::kShear], of_depth};
   }
 
   const Placed& placed_;
   const double* q_;
   double alpha_ = 0;
+  Model::Motion motion_;
   ProfileInTable<double> in_table_;
   Eigen::Vector3d n_;
 };
@@ -188,25 +213,34 @@ void Model::Jacobian(const Target& plane, std::span<const View> profiles, const 
   std::ptrdiff_t rows = 0;
   for (const View& profile : profiles) rows += Points(profile);
   const auto moves = [&](int k) { return seen[k] != 0; };
-  const bool quiet = !seen.point && !moves(kNoiseY) && !moves(kNoiseZ) && !moves(kLineOffset) && !moves(kLineSlope);
-  const bool bends_by = moves(kLinearity) || std::find(seeds.begin(), seeds.end(), kLinearity) != seeds.end();
+  bool drifts = moves(kRangeOffset);
+  for (int k = 0; k < kDrifts; ++k) drifts |= moves(kDriftSweep + k);
+  const bool quiet =
+      !seen.point && !moves(kNoiseY) && !moves(kNoiseZ) && !moves(kLineOffset) && !moves(kLineSlope) && !drifts;
+  const bool bends_by = std::any_of(kBends.begin(), kBends.end(), moves);
+  std::array<int, kForm> bend_of;  // by quantity: its shape, or -1
+  bend_of.fill(-1);
+  for (size_t k = 0; k < kBends.size(); ++k) bend_of[static_cast<size_t>(kBends[k])] = static_cast<int>(k);
   Seen<double> q = seen;
   ProfileDerivatives derivatives(placed, q.q);
   for (const View& profile : profiles) {
     const int points = Points(profile);
     const bool bends = bends_by && profile.bend.size();
-    derivatives.TurnTo(profile.alpha);
+    derivatives.TurnTo(profile);
     const Four at = derivatives.Value();
     const double along_noise = profile.along_range ? -at.A : at.Y, scale = depth ? 1 / along_noise : 1;
+    double offset = q[kLineOffset];
+    for (int k = 0; k < kDrifts && drifts; ++k) offset += profile.motion.elapsed[k] * q[kDriftSweep + k];
+    if (profile.along_range) offset -= q[kRangeOffset];
     // The row of one change of the four numbers; along: the change of along_noise.
     const auto row = [&](int i, const Four& four, double along) {
       const PseudoPoint& p = profile.points[i];
       double sum = p.weight * (four.A + four.Y * p.y + four.Z * p.z);
-      if (bends) sum += four.B * profile.bend[i];
+      for (size_t k = 0; k < kBends.size() && bends; ++k)
+        sum += four.B * q[kBends[k]] * profile.bend(i, static_cast<Eigen::Index>(k));
       if (quiet) return sum;
       sum -= along * q(i, kNoiseY) + four.Z * q(i, kNoiseZ);
-      if (profile.line.size())
-        sum -= along * (profile.line(i, 0) * q[kLineOffset] + profile.line(i, 1) * q[kLineSlope]);
+      if (profile.line.size()) sum -= along * (profile.line(i, 0) * offset + profile.line(i, 1) * q[kLineSlope]);
       return sum;
     };
     for (int i = 0; i < points; ++i) {
@@ -217,7 +251,8 @@ void Model::Jacobian(const Target& plane, std::span<const View> profiles, const 
     for (size_t k = 0; k < seeds.size(); ++k) {
       double* const column = jacobian + static_cast<std::ptrdiff_t>(k) * rows;
       const int seed = seeds[k];
-      if (seed <= kEncoderJitter) {
+      const int shape = seed < kForm ? bend_of[static_cast<size_t>(seed)] : -1;
+      if (seed < kLineOffset && shape < 0 && seed != kRangeOffset) {
         const Four four = derivatives.By(seed);
         const double along = profile.along_range ? -four.A : four.Y;
         for (int i = 0; i < points; ++i)
@@ -225,11 +260,18 @@ void Model::Jacobian(const Target& plane, std::span<const View> profiles, const 
         continue;
       }
       for (int i = 0; i < points; ++i) {
-        const double of_point = seed == kNoiseY   ? along_noise
-                                : seed == kNoiseZ ? at.Z
-                                : seed < kForm
-                                    ? (profile.line.size() ? along_noise * profile.line(i, seed - kLineOffset) : 0)
-                                    : (profile.form.size() ? profile.form(i, seed - kForm) : 0);
+        double of_point = 0;
+        if (seed == kNoiseY) of_point = along_noise;
+        else if (seed == kNoiseZ) of_point = at.Z;
+        else if (seed >= kForm) of_point = profile.form.size() ? profile.form(i, seed - kForm) : 0;
+        else if (shape >= 0) of_point = profile.bend.size() ? -at.B * profile.bend(i, shape) : 0;
+        else if (profile.line.size())
+          of_point =
+              along_noise * (seed == kLineSlope     ? profile.line(i, 1)
+                             : seed == kLineOffset  ? profile.line(i, 0)
+                             : seed != kRangeOffset ? profile.line(i, 0) * profile.motion.elapsed[seed - kDriftSweep]
+                             : profile.along_range  ? -profile.line(i, 0)
+                                                    : 0);
         column[i] = -of_point * scale;
       }
     }
@@ -304,10 +346,24 @@ System System::With(double M, double N) const {
   return system;
 }
 
-double System::Bend(double y) const {
-  constexpr double kNoExtent_mm = 1e-9;
-  const double eta = (2 * y - depths[0] - depths[1]) / std::max(depths[1] - depths[0], kNoExtent_mm);
-  return eta * eta;
+std::array<double, Model::kBends.size()> System::Shapes(double y, double z) const {
+  const auto scaled = [](double value, const std::array<double, 2>& over) {
+    return (2 * value - over[0] - over[1]) / std::max(over[1] - over[0], 1e-9);  // mm: any extent
+  };
+  const double eta = scaled(y, depths), zeta = scaled(z, heights);
+  return {eta * eta, eta * eta * eta, zeta * zeta, eta * zeta, eta * zeta * zeta};
+}
+
+double System::Bend(double y, double z) const {
+  if (!Bends()) return 0;
+  const auto shapes = Shapes(y, z);
+  double bend = 0;
+  for (size_t k = 0; k < shapes.size(); ++k) bend += q[Model::kBends[k]] * shapes[k];
+  return bend;
+}
+
+bool System::Bends() const {
+  return std::any_of(Model::kBends.begin(), Model::kBends.end(), [&](Model::Index k) { return q[k] != 0; });
 }
 
 namespace {
@@ -325,13 +381,23 @@ std::array<T, Model::kForm> OfOneProfile(const std::array<double, System::kQuant
 
 ProfileInTable<double> System::At(double alpha) const { return {alpha, OfOneProfile<double>(q).data()}; }
 
-Eigen::Vector3d System::Point(double alpha, double y, double z) const { return At(alpha).Point(y, z, Bend(y)); }
+Eigen::Vector3d System::Point(double alpha, double y, double z) const {
+  const double range = std::hypot(y, z), longer = range > 0 ? 1 + q[Model::kRangeOffset] / range : 1;
+  return At(alpha).Point(longer * y, longer * z, Bend(y, z));
+}
 
 System::Derivatives System::Differentiate(double alpha, double y, double z) const {
   using Jet = ceres::Jet<double, kQuantities>;
   std::array<Jet, Model::kForm> seeds = OfOneProfile<Jet>(q);
   for (int k = 0; k < static_cast<int>(kQuantities); ++k) seeds[k].v[k] = 1;
-  const Eigen::Matrix<Jet, 3, 1> p = ProfileInTable<Jet>(alpha, seeds.data()).Point(y, z, Bend(y));
+  const double range = std::hypot(y, z);
+  const Jet longer = range > 0 ? 1.0 + seeds[Model::kRangeOffset] / range : Jet(1.0);
+  const auto shapes = Shapes(y, z);
+  Jet bend(0.0);
+  for (size_t k = 0; k < shapes.size(); ++k) bend += seeds[Model::kBends[k]] * shapes[k];
+  const ProfileInTable<Jet> in_table(alpha, seeds.data());
+  const Eigen::Matrix<Jet, 3, 1> p = in_table.Turned(in_table.origin + in_table.along_y * (longer * y) +
+                                                     in_table.along_z * (longer * z) + in_table.along_depth * bend);
   Derivatives result;
   for (int i = 0; i < 3; ++i) {
     result.point[i] = p[i].a;

@@ -234,7 +234,7 @@ Json MessagesJson(const Calibration& c, const Comparison& comparison) {
     if (!sentence.id.empty() && said.insert(sentence.english).second)
       list.push_back({{"id", sentence.id}, {"en", sentence.english}, {"de", sentence.german}});
   };
-  for (const auto* sentences : {&c.unreliable, &c.warnings, &c.check.names})
+  for (const auto* sentences : {&c.unreliable, &c.warnings, &c.notes, &c.check.names})
     for (const Sentence& sentence : *sentences) add(sentence);
   for (const BudgetLine& line : c.budget) add(line.source);
   for (const ComparisonRow& row : comparison.rows) {
@@ -260,6 +260,7 @@ Json ToJson(const Calibration& c, const Enclosures& with) {
   json["status"] = c.ok() ? "ok" : "unreliable";
   json["unreliable"] = c.unreliable;
   json["warnings"] = c.warnings;
+  json["notes"] = c.notes;
   json["weights"] = c.equal_weights ? "equal" : "estimated";
   json["messages"] = MessagesJson(c, {});
   json["parameters"] = Json::array();
@@ -290,6 +291,7 @@ Json ToJson(const Calibration& c, const Enclosures& with) {
   json["condition"] = Number(c.condition);
   json["weakest"] = c.weakest;
   json["neighbours"] = Number(c.neighbours);
+  if (c.neighbour_noise > 0) json["neighbour_noise"] = Number(c.neighbour_noise);
   json["misfits"] = MisfitsJson(c);
   json["budget"] = BudgetJson(c);
   json["influences"] = InfluencesJson(c);

@@ -256,6 +256,7 @@ std::string ToText(const Calibration& c) {
             " region): " + Significant(c.joint.k, 3) + "; of one: see the table\n";
   text += VolumeText(c.volume);
   text += "\n";
+  for (const std::string& note : c.notes) text += "note: " + note + "\n";
   for (const std::string& warning : c.warnings) text += "warning: " + warning + "\n";
   for (const std::string& reason : c.unreliable) text += "unreliable: " + reason + "\n";
   text += std::string("status: ") + (c.ok() ? "ok" : "unreliable") + "\n";

@@ -5,6 +5,7 @@
 #include "solver/uncertainty/gum.h"
 #include "solver/uncertainty/jackknife.h"
 #include "solver/uncertainty/misfit.h"
+#include "solver/uncertainty/neighbours.h"
 
 namespace scancal {
 namespace {
@@ -212,7 +213,14 @@ Solution SolveWeighted(const Solution& plain, double least, const RefineOptions&
   Problem problem = plain.problem;
   Estimate start = plain.fit.estimate;
   Variances variances = EstimateVariances(&problem, &start, least);
+  const bool ordered =
+      std::any_of(problem.quantities.begin(), problem.quantities.end(), [](const Quantity& q) { return q.in_order; });
   Solution solution = Solve(std::move(problem), start, options);
+  if (ordered) {
+    const Neighbours neighbours = CorrelationOfNeighbours(solution.problem, solution.fit.estimate, solution.linear);
+    if (neighbours.IsSignificant() && EstimateNeighbours(&solution.problem, solution.fit.estimate, &variances))
+      solution = Solve(std::move(solution.problem), solution.fit.estimate, options);
+  }
   solution.fit.iterations += plain.fit.iterations;
   solution.naive = plain.naive;
   solution.variances = std::move(variances);
@@ -238,8 +246,14 @@ Calibration Summarize(const Solution& solution, const PureError& pure_error) {
   const double noise_dof = solution.variances && headline.dof.size() > 0
                                ? std::max(clustered.dof, std::min(headline.dof.minCoeff(), kKnown_dof))
                                : clustered.dof;
-  if (solution.variances)
-    result.misfits = TestMisfits(solution.problem, solution.fit.estimate, solution.linear, noise_dof);
+  if (solution.variances) {
+    const Neighbours neighbours = CorrelationOfNeighbours(solution.problem, solution.fit.estimate, solution.linear);
+    result.neighbours = neighbours.correlation;
+    for (const Quantity& quantity : solution.problem.quantities)
+      result.neighbour_noise = std::max(result.neighbour_noise, quantity.neighbour);
+    result.misfits = TestMisfits(solution.problem, solution.fit.estimate, solution.linear, noise_dof,
+                                 ScatterOfNeighbours(solution.problem, neighbours.correlation));
+  }
   for (Eigen::Index t = 0; t < jackknife.estimates.rows(); ++t)
     result.jackknife.push_back(Plain(jackknife.estimates.row(t).transpose()));
   AddDoubts(solution, jackknife, noise_dof, &result);

@@ -162,6 +162,7 @@ struct Calibration {
   bool equal_weights = false;          // in place of weights from the variances
   std::vector<Sentence> warnings;      // worth knowing
   std::vector<Sentence> unreliable;    // why not to rely on it; none: status ok
+  std::vector<Sentence> notes;         // what the data cannot show, and what was supposed: no doubt of this result
   std::vector<Parameter> parameters;   // every system quantity of role estimate or consider, and the model's main ones
   std::vector<std::string> estimated;  // the order of the covariance
   Eigen::MatrixXd covariance;          // of the headline
@@ -172,6 +173,7 @@ struct Calibration {
   LackOfFit lack_of_fit;
   std::vector<MisfitTest> misfits;  // of a weighted fit
   double neighbours = 0;            // correlation of the residuals of neighbouring views
+  double neighbour_noise = 0;       // of what is random in them, where it was estimated and is in u
   double condition = 0;
   std::map<std::string, double> weakest;  // components of the least determined direction
   std::vector<BudgetLine> budget;

@@ -1,8 +1,11 @@
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include "solver/calibrate.h"
 #include "solver/uncertainty/gum.h"
 #include "solver/uncertainty/misfit.h"
+#include "solver/uncertainty/neighbours.h"
 
 namespace scancal {
 namespace {
@@ -13,14 +16,19 @@ constexpr Message<std::string_view, double> kTargetsDisagree{
     "small, or the model lacks something",
     "{}: Wird ein Prüfkörper weggelassen, so ändert sich der Wert {:.2g}-mal so stark, wie es u erklärt; die "
     "Prüfkörper widersprechen einander: u ist zu klein, oder dem Modell fehlt etwas"};
-constexpr Message<std::string_view, Sentence, double, std::string_view, std::string_view, double, Sentence,
-                  std::string_view, double, Sentence>
-    kMisfit{
-        "solver.misfit",
-        "lack of fit: {} is {}, but the residuals ask for {:.2g}{}{} (F = {:.3g}, {}), which would move {} by {:.2g} "
-        "u{}; estimate it, or declare how uncertain it is, if it is what it looks like",
-        "Mangelnde Anpassung: {} ist {}, die Residuen verlangen jedoch {:.2g}{}{} (F = {:.3g}, {}); das verschöbe {} "
-        "um das {:.2g}-Fache von u{}. Schätzen oder die Unsicherheit angeben, wenn es das ist, wonach es aussieht"};
+constexpr Message<std::string_view, Sentence, double, Sentence, double, Sentence, Sentence, Sentence, Sentence> kMisfit{
+    "solver.misfit",
+    "lack of fit: {} is {}, but the residuals ask for {:.2g}{} (F = {:.3g}, {}), which would move {}{}; {}",
+    "Mangelnde Anpassung: {} ist {}, die Residuen verlangen jedoch {:.2g}{} (F = {:.3g}, {}); das verschöbe {}{}. {}"};
+constexpr Message<> kEstimateIt{"solver.estimate_it",
+                                "estimate it, or declare how uncertain it is, if it is what it looks like",
+                                "Schätzen oder die Unsicherheit angeben, wenn es das ist, wonach es aussieht"};
+constexpr Message<> kDeclareIt{
+    "solver.declare_it", "declare how uncertain it is, if it is what it looks like: data alone do not tell it apart",
+    "Die Unsicherheit angeben, wenn es das ist, wonach es aussieht: Die Daten allein trennen "
+    "es nicht ab"};
+constexpr Message<std::string_view, std::string_view, double, std::string_view, double> kMove{
+    "solver.move", "{} by {}{:.2g} {} ({:.2g} u)", "{} um {}{:.2g} {} ({:.2g} u)"};
 constexpr Message<> kHeld{"solver.held", "held", "festgehalten"};
 constexpr Message<> kUnderestimated{"solver.underestimated", "considered with a smaller u",
                                     "mit kleinerer Unsicherheit berücksichtigt"};
@@ -33,6 +41,13 @@ constexpr Message<double, double> kNeighboursCorrelated{
     "model, u is too small by a factor of about {:.2g}",
     "Benachbarte Ansichten sind korreliert ({:.2g}), zählen aber als unabhängig: Soweit dies weder Formabweichung noch "
     "ein falsches Modell ist, ist u etwa um den Faktor {:.2g} zu klein"};
+constexpr Message<double, double> kNeighboursCounted{"solver.neighbours_counted",
+                                                     "the noise of neighbouring views is correlated ({:.2g}, "
+                                                     "estimated); u allows for it, and would be smaller by a factor of "
+                                                     "about {:.2g} without",
+                                                     "Das Rauschen benachbarter Ansichten ist korreliert ({:.2g}, "
+                                                     "geschätzt); u berücksichtigt dies und wäre sonst etwa um "
+                                                     "den Faktor {:.2g} kleiner"};
 constexpr Message<std::string_view, double, double> kDeclaredTooSmall{
     "solver.declared_too_small",
     "{}: declared with u = {:.3g}, but the residuals show {:.3g} (mm, rad); the larger one is used",
@@ -89,13 +104,11 @@ constexpr Message<Sentence, std::string_view> kLeastDetermined{
     "Die Ausgleichung konvergierte nicht: {}; am wenigsten bestimmt ist {}: festhalten, Vorwissen angeben oder mehr "
     "Iterationen zulassen"};
 
-constexpr double kSuspicious = 1e-3;       // a warning that a right data set raises once in a thousand
-constexpr double kContradiction = 1e-6;    // no chance any more
-constexpr double kNearly = 0.8;            // of the strongest
-constexpr double kFarFromIndependent = 4;  // standard errors
-constexpr double kLeastCorrelation = 0.1;  // makes u too small by a tenth
-constexpr double kExcluded = 1.3;          // times what was declared
-constexpr double kFarFromPrior = 3;        // of the prior's u
+constexpr double kSuspicious = 1e-3;     // a warning that a right data set raises once in a thousand
+constexpr double kContradiction = 1e-6;  // no chance any more
+constexpr double kNearly = 0.8;          // of the strongest
+constexpr double kExcluded = 1.3;        // times what was declared
+constexpr double kFarFromPrior = 3;      // of the prior's u
 
 Sentence NotConverged(const Sentence& why, const std::map<std::string, double>& direction) {
   const auto worst = std::max_element(direction.begin(), direction.end(), [](const auto& a, const auto& b) {
@@ -106,7 +119,8 @@ Sentence NotConverged(const Sentence& why, const std::map<std::string, double>& 
 
 void JudgeJackknife(const Solution& solution, const Jackknife& jackknife, double noise_dof, Calibration* result) {
   if (jackknife.estimates.rows() < 2 || noise_dof < 1) return;
-  const ExpectedJackknife expected = ExpectLeaveOneTargetOut(solution.problem, solution.fit.estimate, solution.linear);
+  const ExpectedJackknife expected = ExpectLeaveOneTargetOut(solution.problem, solution.fit.estimate, solution.linear,
+                                                             ScatterOfNeighbours(solution.problem, result->neighbours));
   for (size_t k = 0; k < result->estimated.size(); ++k) {
     const auto e = static_cast<Eigen::Index>(k);
     // What no target moves, because only its prior or a declaration holds it, is rounding over rounding.
@@ -123,8 +137,8 @@ Sentence Chance(double p) { return p < 1e-16 ? Sentence{"p < 1e-16"} : Say(kChan
 
 // The most significant of those that matter; the others say the same.
 void JudgeTargets(const Solution& solution, double noise_dof, Calibration* result) {
-  const std::vector<TargetTest> tests =
-      TestTargets(solution.problem, solution.fit.estimate, solution.linear, noise_dof);
+  const std::vector<TargetTest> tests = TestTargets(solution.problem, solution.fit.estimate, solution.linear, noise_dof,
+                                                    ScatterOfNeighbours(solution.problem, result->neighbours));
   size_t worst = 0, count = 0;
   for (size_t t = 0; t < tests.size(); ++t) {
     count += tests[t].p < kSuspicious;
@@ -138,40 +152,96 @@ void JudgeTargets(const Solution& solution, double noise_dof, Calibration* resul
                      Chance(test.p), tests.size(), which, furthest, count));
 }
 
-// Several sources may look alike: the first, in the model's order, that explains nearly as much as the strongest.
+// A number's unit in words, an angle in degrees besides.
+Sentence InUnit(double size, Unit unit, bool rms) {
+  std::string text = unit == Unit::kOne ? "" : " " + std::string(Name(unit));
+  if (rms) text += " rms";
+  if (unit == Unit::kRad) text += fmt::format(", {:.2g} deg", size / (std::numbers::pi / 180));
+  return {text};
+}
+
+// The three parameters that move farthest in units of their u, in their own order: "M by -0.12 mm (5.6 u), N by ...".
+Sentence MovesOf(const MisfitTest& misfit, const Calibration& result, double* furthest) {
+  constexpr size_t kMost = 3;
+  constexpr double kAny = 0.1;
+  std::vector<double> in_u;
+  for (size_t k = 0; k < result.estimated.size(); ++k)
+    in_u.push_back(std::abs(misfit.moves[k]) / result.Find(result.estimated[k])->u);
+  std::vector<double> sorted = in_u;
+  std::sort(sorted.rbegin(), sorted.rend());
+  *furthest = sorted.empty() ? 0 : sorted[0];
+  const double least = std::min(*furthest, std::max(kAny, sorted.size() > kMost ? sorted[kMost - 1] : 0));
+  Sentence all;
+  for (size_t k = 0; k < in_u.size(); ++k) {
+    if (in_u[k] < least) continue;
+    const Parameter& p = *result.Find(result.estimated[k]);
+    const char* sign = misfit.dof1 > 1 ? "±" : misfit.moves[k] < 0 ? "-" : "+";
+    const Sentence move = Say(kMove, p.name, sign, std::abs(misfit.moves[k]), Name(p.unit), in_u[k]);
+    all.english += (all.english.empty() ? "" : ", ") + move.english;
+    all.german += (all.german.empty() ? "" : ", ") + move.german;
+    all.id = move.id;
+  }
+  return all;
+}
+
+// Which of the significant ones is named first. One quantity that explains what many do is the simpler cause: the
+// first, in the model's order, of those that explain nearly as much as the best. If a source of several, as the form of
+// a plate is, explains more than chance would give its further quantities, it comes before.
+const MisfitTest* Likeliest(const std::vector<const MisfitTest*>& significant) {
+  constexpr double kChanceOf = 3.1;  // normal quantile of 0.001
+  const auto explained = [](const MisfitTest& test) { return test.F * test.dof1; };
+  const MisfitTest *single = nullptr, *several = nullptr;
+  double best = 0;
+  for (const MisfitTest* each : significant)
+    if (each->dof1 <= 1) best = std::max(best, explained(*each));
+  for (const MisfitTest* each : significant) {
+    if (each->dof1 <= 1 && !single && explained(*each) >= kNearly * best) single = each;
+    if (each->dof1 > 1 && (!several || explained(*each) - 2 * each->dof1 > explained(*several) - 2 * several->dof1))
+      several = each;
+  }
+  if (!several) return single;
+  const double more = several->dof1 - (single ? 1 : 0);
+  return explained(*several) - best > more + kChanceOf * std::sqrt(2 * more) ? several : single ? single : several;
+}
+
+// Several sources may look alike.
 void JudgeMisfits(Calibration* result) {
   std::vector<const MisfitTest*> significant;
-  double largest = 0;
-  for (const MisfitTest& misfit : result->misfits) {
-    if (misfit.p >= kSuspicious) continue;
-    significant.push_back(&misfit);
-    largest = std::max(largest, misfit.F);
-  }
+  for (const MisfitTest& misfit : result->misfits)
+    if (misfit.p < kSuspicious) significant.push_back(&misfit);
   if (significant.empty()) return;
-  const MisfitTest* strongest = *std::find_if(significant.begin(), significant.end(),
-                                              [&](const MisfitTest* each) { return each->F >= kNearly * largest; });
+  const MisfitTest* strongest = Likeliest(significant);
   std::string others;
   for (const MisfitTest* each : significant)
     if (each != strongest) others += (others.empty() ? "" : ", ") + each->source;
-  const auto [which, furthest] = Furthest(strongest->moves, *result);
+  const auto influence = std::find_if(result->influences.begin(), result->influences.end(),
+                                      [&](const Influence& each) { return each.source == strongest->source; });
+  const bool of_targets = influence != result->influences.end() && influence->scope == Scope::kTarget;
+  double furthest = 0;
+  const Sentence moves = MovesOf(*strongest, *result, &furthest);
   (furthest > 1 ? result->unreliable : result->warnings)
       .push_back(Say(kMisfit, strongest->source, Say(strongest->considered ? kUnderestimated : kHeld), strongest->size,
-                     strongest->unit == Unit::kOne ? "" : " " + std::string(Name(strongest->unit)),
-                     strongest->dof1 > 1 ? " rms" : "", strongest->F, Chance(strongest->p), which, furthest,
-                     others.empty() ? Sentence{} : Say(kAlsoSeenAs, others)));
+                     InUnit(strongest->size, strongest->unit, strongest->dof1 > 1), strongest->F, Chance(strongest->p),
+                     moves, others.empty() ? Sentence{} : Say(kAlsoSeenAs, others),
+                     Say(of_targets ? kDeclareIt : kEstimateIt)));
 }
 
 void JudgeNeighbours(const Solution& solution, Calibration* result) {
   const Neighbours neighbours = CorrelationOfNeighbours(solution.problem, solution.fit.estimate, solution.linear);
-  result->neighbours = neighbours.correlation;
+  if (result->neighbour_noise > 0) {
+    result->notes.push_back(Say(kNeighboursCounted, result->neighbour_noise,
+                                std::sqrt(ScatterOfNeighbours(solution.problem, neighbours.correlation))));
+    return;
+  }
   // What is considered looks the same, and is in u.
   if (!solution.problem.With({Scope::kSystem, Scope::kTarget}, Role::kConsider).empty()) return;
-  const double significant = kFarFromIndependent * neighbours.standard_error;
-  if (neighbours.correlation < std::max(significant, kLeastCorrelation)) return;
+  if (!neighbours.IsSignificant()) return;
   // The variance of the mean of a series whose correlation falls as rho^lag is (1 + rho) / (1 - rho) times that of an
   // independent one (Zhang, Metrologia 43, 2006, S276).
-  result->warnings.push_back(Say(kNeighboursCorrelated, neighbours.correlation,
-                                 std::sqrt((1 + neighbours.correlation) / (1 - neighbours.correlation))));
+  constexpr double kFarTooSmall = 2;
+  const double factor = std::sqrt((1 + neighbours.correlation) / (1 - neighbours.correlation));
+  (factor > kFarTooSmall ? result->unreliable : result->warnings)
+      .push_back(Say(kNeighboursCorrelated, neighbours.correlation, factor));
 }
 
 void JudgeVariances(const Variances& variances, Calibration* result) {

@@ -35,6 +35,11 @@ struct Quantity {
   double u = 0;           // estimate: standard uncertainty of the prior (0: none); consider: of the quantity
   bool in_nodes = false;  // the node storey is exact for it (see Target)
   std::string source;     // its line in the budget; empty: its name
+  // Of target scope and considered: whether the targets share one value is not known, and the worse of both counts.
+  bool perhaps_shared = false;
+  // Of view scope: the views are in an order in which neighbours may err alike, by this much: correlation rho^distance.
+  bool in_order = false;
+  double neighbour = 0;
   const std::string& Source() const { return source.empty() ? name : source; }
 };
 using Quantities = std::vector<Quantity>;

@@ -26,6 +26,7 @@ struct RawProfile {
   std::vector<double> y, z;   // mm
   std::vector<double> range;  // mm; a lidar's, else empty
   double time = 0;            // of the column `time`; without it the running number
+  double temperature = 0;     // of the column `temperature`
 };
 
 void OrderAlongLine(RawProfile* profile);  // by z; points at one z keep their order
@@ -42,6 +43,7 @@ struct Profile {
   std::optional<ProfileFactor> ranged;  // a lidar's: the same rows times the range at the profile's own line
   PureError pure_error;                 // of depth (of range) about the profile's own line
   double time = 0;                      // as logged, or the running number in the file
+  double temperature = 0;               // as logged, else 0
 };
 
 // From what is kept to what follows from it: factor and pure error.
@@ -118,18 +120,27 @@ void ToSensor(const Senses& senses, const ScanBatch& batch, SensorColumns* point
 std::vector<Model::View> Views(const std::vector<Profile>& profiles, Model::Residuals residuals);
 // For planes through the pseudo-points of a known system.
 std::vector<Model::View> PlaneViews(const std::vector<Profile>& profiles, const System& system);
-Eigen::Vector3d PointOf(const ProfileInTable<double>& in_table, const Model::View& profile, Eigen::Index point);
+Eigen::Vector3d PointOf(const System& system, const ProfileInTable<double>& in_table, const Model::View& profile,
+                        Eigen::Index point);
 
 // Errors that curve along a profile fill columns of the views, as the straight line that they look like there. What is
 // left of them bends the profile; that moves no plane, and is lost in the noise of single points.
 //
-// `bend`: eta^2, eta from -1 to 1 over the system's depths.
+// `bend`: System::Shapes over the system's depths and heights.
 void AddBend(const System& system, const std::vector<Profile>& profiles, std::vector<Model::View>* views);
 // `form`: the modes of FormModesAt. The plate's square is the rectangle that bounds the points as they lie on the plane
 // n . P = d: across the plate at right angles to the table's axis, and up. It starts from the placement's own points,
-// so one plate in all placements has one form only if its edges are in view.
-void AddForm(const std::vector<Profile>& profiles, const System& system, const Eigen::Vector3d& normal, double distance,
-             std::vector<Model::View>* views);
+// so one plate in all placements has one form only if its edges are in view. Returns the sides, mm.
+Eigen::Array2d AddForm(const std::vector<Profile>& profiles, const System& system, const Eigen::Vector3d& normal,
+                       double distance, std::vector<Model::View>* views);
+
+struct Placement;
+// How far each profile of placement t has come in the kinds of drift (0 to 1: over its own sweep, over the measurement,
+// exponentially over the measurement, over the range of logged temperatures), and which way and how fast it moved.
+void AddMotion(const std::vector<Placement>& placements, size_t t, std::vector<Model::View>* views);
+// Whether each scan goes there and back, or otherwise takes its angles at different times: then a drift over the sweep
+// is no function of the angle, and the data tell it.
+bool SweepsTellDrift(const std::vector<Placement>& placements);
 
 struct Placement {
   std::string name;

@@ -1,4 +1,5 @@
 // Compressed placements as JSON and back.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -164,6 +165,10 @@ Result<Json> PlacementsToJson(const std::vector<Placement>& placements) {
                        {"warning", ToJson(placement.warnings.empty() ? Sentence{} : placement.warnings.front())}});
     for (size_t k = 1; k < placement.warnings.size(); ++k)
       targets.back()["more_warnings"].push_back(ToJson(placement.warnings[k]));
+    const bool warm = std::any_of(placement.profiles.begin(), placement.profiles.end(),
+                                  [](const Profile& profile) { return profile.temperature != 0; });
+    for (size_t k = 0; k < placement.profiles.size() && warm; ++k)
+      targets.back()["temperatures"].push_back(placement.profiles[k].temperature);
     if (placement.timed)
       for (const Profile& profile : placement.profiles) targets.back()["times"].push_back(profile.time);
     Write(placement, &numbers);
@@ -204,6 +209,13 @@ Result<std::vector<Placement>> PlacementsFromJson(const Json& data, const std::s
       }
       if (!placement->timed)
         return damaged("target " + placement->name + ": times: expected a number for each profile");
+    }
+    if (target.contains("temperatures") && numbers.sound()) {
+      const Json& temperatures = target["temperatures"];
+      if (!temperatures.is_array() || temperatures.size() != placement->profiles.size())
+        return damaged("target " + placement->name + ": temperatures: expected a number for each profile");
+      for (size_t k = 0; k < temperatures.size(); ++k)
+        if (temperatures[k].is_number()) placement->profiles[k].temperature = temperatures[k];
     }
     placements.push_back(std::move(*placement));
   }

@@ -1,6 +1,7 @@
 #include "models/turntable/declare.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -16,8 +17,9 @@ constexpr double kImplausibleOffset_mm = 20'000;
 constexpr double kMostNodesDeclared = 1e9;
 
 const std::map<std::string, Dimension, std::less<>> kColumns = {
-    {"angle", Dimension::kAngle},  {"bearing", Dimension::kAngle}, {"y", Dimension::kLength}, {"z", Dimension::kLength},
-    {"range", Dimension::kLength}, {"profile", Dimension::kNone},  {"time", Dimension::kNone}};
+    {"angle", Dimension::kAngle}, {"bearing", Dimension::kAngle},   {"y", Dimension::kLength},
+    {"z", Dimension::kLength},    {"range", Dimension::kLength},    {"profile", Dimension::kNone},
+    {"time", Dimension::kNone},   {"temperature", Dimension::kNone}};
 
 Dimension DimensionOf(std::string_view column) {
   const auto found = kColumns.find(column);
@@ -135,8 +137,19 @@ Result<void> SetParameters(const Dataset& dataset, Model* model) {
   return {};
 }
 
-// Median peak to valley of a surface of such modes over its rms, by simulation 6.3.
-constexpr double kPeakToValley = 6;
+constexpr Message<> kOnePlateUnknown{
+    "turntable.one_plate_unknown",
+    "one_plate is not declared: whether the placements are of one plate, whose form they share, or of several decides "
+    "how "
+    "much it counts; the worse of both was taken, for each parameter. Declare one_plate: yes or no",
+    "one_plate ist nicht angegeben: Ob alle Aufstellungen dieselbe Platte zeigen, deren Form sie teilen, oder mehrere, "
+    "entscheidet darüber, wie viel sie zählt; für jeden Parameter wurde das Ungünstigere von beidem genommen. "
+    "one_plate: "
+    "yes oder no angeben"};
+
+// Peak to valley over rms of a bow, r^2 - 1/3 over [-1, 1]: 1.5 sqrt(5). No mode of FormModesAt has a larger rms for
+// its peak to valley; of a surface of all of them the median is 6.3.
+constexpr double kPeakToValley = 3.354;
 
 // Those with a quantity of the same name and no rule of their own.
 const std::map<std::string, Model::Index> kInfluences = {{"noise_y", Model::kNoiseY},
@@ -149,7 +162,27 @@ const std::map<std::string, Model::Index> kInfluences = {{"noise_y", Model::kNoi
                                                          {"scale_y", Model::kScaleY},
                                                          {"scale_z", Model::kScaleZ},
                                                          {"shear", Model::kShear},
-                                                         {"linearity", Model::kLinearity}};
+                                                         {"linearity", Model::kLinearity},
+                                                         {"linearity_3", Model::kLinearity3},
+                                                         {"lens_z2", Model::kLensZ2},
+                                                         {"lens_yz", Model::kLensYZ},
+                                                         {"lens_yz2", Model::kLensYZ2},
+                                                         {"range_offset", Model::kRangeOffset},
+                                                         {"range_scale", Model::kRangeScale},
+                                                         {"encoder_scale", Model::kEncoderScale},
+                                                         {"backlash", Model::kBacklash},
+                                                         {"latency", Model::kLatency},
+                                                         {"runout", Model::kRunOut},
+                                                         {"wobble", Model::kWobble},
+                                                         {"drift_sweep", Model::kDriftSweep},
+                                                         {"drift", Model::kDrift},
+                                                         {"warm_up", Model::kWarmUp},
+                                                         {"drift_temperature", Model::kDriftTemperature}};
+// What sweeps can tell by themselves.
+constexpr std::array kTold = {Model::kLinearity3,  Model::kLensZ2,       Model::kLensYZ,   Model::kLensYZ2,
+                              Model::kRangeOffset, Model::kEncoderScale, Model::kBacklash, Model::kLatency,
+                              Model::kDriftSweep,  Model::kDrift,        Model::kWarmUp,   Model::kDriftTemperature};
+
 const std::vector<std::string> kOthers = {"line_correlation", "form",        "flatness",
                                           "one_plate",        "temperature", "expansion"};
 
@@ -168,6 +201,10 @@ class Influences {
 
   Result<void> SetAll() {
     for (const InfluenceSetting& setting : dataset_.influences) SCANCAL_RETURN_IF_ERROR(Set(setting));
+    if (!one_plate_ && model_.quantity(Model::kForm).role == Role::kConsider) {
+      for (int k = 0; k < kFormModes; ++k) model_.quantity(Model::kForm + k).perhaps_shared = true;
+      declaration_.notes.push_back(Say(kOnePlateUnknown));
+    }
     return SetExpansion();
   }
 
@@ -194,7 +231,8 @@ class Influences {
     const bool random = quantity.scope == Scope::kView || quantity.scope == Scope::kPoint;
     if (!random && quantity.role != Role::kHold)
       return Wrong(setting.name, "declared twice, here and under parameters");
-    if (!random && setting.role == "estimate" && setting.u == 0)
+    const bool told_alone = std::find(kTold.begin(), kTold.end(), index) != kTold.end();
+    if (!random && !told_alone && setting.role == "estimate" && setting.u == 0)
       return Wrong(setting.name, "not determined by planes, expected its standard uncertainty in place of estimate");
     if (random && setting.role == "estimate" && setting.u > 0)
       return Wrong(setting.name, "its variance is estimated without a prior, expected estimate or a number");
@@ -208,6 +246,12 @@ class Influences {
     quantity.role = setting.role == "estimate"                               ? Role::kEstimate
                     : setting.role == "consider" && (told || quantity.u > 0) ? Role::kConsider
                                                                              : Role::kHold;
+    declaration_.drift_declared |= index == Model::kDrift;
+    if (index == Model::kDriftSweep) declaration_.drift_held = quantity.role == Role::kHold;
+    for (int k = 1; k < Model::kRunOuts && (index == Model::kRunOut || index == Model::kWobble); ++k) {
+      model_.quantity(index + k).u = quantity.u;
+      model_.quantity(index + k).role = quantity.role;
+    }
     if (index == Model::kNoiseY && quantity.u == 0 && setting.role != "estimate")
       return Wrong(setting.name, "expected more than 0, or estimate: every point has noise");
     return {};
@@ -229,6 +273,7 @@ class Influences {
 
   Result<void> SetOnePlate(const InfluenceSetting& setting) {
     if (setting.role != "yes" && setting.role != "no") return Wrong(setting.name, "expected yes or no");
+    one_plate_ = true;
     for (int k = 0; k < kFormModes && setting.role == "yes"; ++k)
       model_.quantity(Model::kForm + k).scope = Scope::kSystem;
     return {};
@@ -270,6 +315,7 @@ class Influences {
   Model& model_;
   Declaration& declaration_;
   std::optional<double> temperature_, expansion_;
+  bool one_plate_ = false;  // declared, either way
 };
 
 }  // namespace

@@ -36,7 +36,10 @@ struct Declaration {
   GridBox search;               // of M and N, mm
   std::vector<ScanDeclaration> scans;
   std::optional<double> line_correlation;  // points; declared
+  bool drift_declared = false;             // `drift`, whatever it is
+  bool drift_held = false;                 // drift_sweep was declared as held, even where sweeps tell it
   std::vector<Sentence> warnings;          // worth knowing
+  std::vector<Sentence> notes;             // what was supposed where nothing was declared
 };
 
 // Takes every key of the data set; role, value and u of `model`'s quantities are set from parameters and influences. An

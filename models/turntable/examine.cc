@@ -176,9 +176,10 @@ double DropCopiedPoints(RawScan* scan) {
       size_t i = 0;
       std::erase_if(*column, [&](double) { return same[i++]; });
     }
-    const double time = scan->compressed[k].time;
+    const double time = scan->compressed[k].time, temperature = scan->compressed[k].temperature;
     scan->compressed[k] = CompressProfile(profile.alpha, profile.y, profile.z, profile.range);
     scan->compressed[k].time = time;
+    scan->compressed[k].temperature = temperature;
     dropped += found;
   }
   return dropped;
@@ -217,7 +218,7 @@ std::vector<size_t> Beginnings(const RawProfile& profile) {
 }
 
 RawProfile Part(const RawProfile& profile, size_t from, size_t to) {
-  RawProfile part{profile.key, profile.alpha, {}, {}, {}, profile.time};
+  RawProfile part{profile.key, profile.alpha, {}, {}, {}, profile.time, profile.temperature};
   for (const auto column : {&RawProfile::y, &RawProfile::z, &RawProfile::range})
     if (const std::vector<double>& of = profile.*column; !of.empty())
       (part.*column)

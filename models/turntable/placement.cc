@@ -104,6 +104,7 @@ std::vector<Profile> Compressed(const std::vector<RawProfile>& profiles) {
     const RawProfile& profile = profiles[k];
     compressed[k] = CompressProfile(profile.alpha, profile.y, profile.z, profile.range);
     compressed[k].time = profile.time;
+    compressed[k].temperature = profile.temperature;
   });
   return compressed;
 }
@@ -189,7 +190,7 @@ RobustPlane FitRobustPlane(const std::vector<Profile>& profiles, const System& s
   for (const size_t k : order) {
     const ProfileInTable<double> in_table = system.At(profiles[k].alpha);
     Points& profile = points.emplace_back();
-    for (int i = 0; i < 3; ++i) profile[static_cast<size_t>(i)] = PointOf(in_table, views[k], i);
+    for (int i = 0; i < 3; ++i) profile[static_cast<size_t>(i)] = PointOf(system, in_table, views[k], i);
   }
   std::vector<size_t> on(points.size());
   std::iota(on.begin(), on.end(), 0);
@@ -217,9 +218,10 @@ void DistancesFrom(const RobustPlane& plane, const System& system, const RawProf
   const ProfileInTable<double> in_table = system.At(profile.alpha);
   const Eigen::Vector3d n = in_table.TurnedBack(plane.normal);
   const double at_origin = n.dot(in_table.origin) - plane.normal.dot(plane.through);
-  const double by_y = n.dot(in_table.along_y), by_z = n.dot(in_table.along_z), by_bend = n.dot(in_table.along_bend);
+  const double by_y = n.dot(in_table.along_y), by_z = n.dot(in_table.along_z), by_depth = n.dot(in_table.along_depth);
+  const bool bends = system.Bends();
   for (size_t i = 0; i < to.size(); ++i) to[i] = at_origin + by_y * profile.y[i] + by_z * profile.z[i];
-  for (size_t i = 0; i < to.size() && by_bend != 0; ++i) to[i] += by_bend * system.Bend(profile.y[i]);
+  for (size_t i = 0; i < to.size() && bends; ++i) to[i] += by_depth * system.Bend(profile.y[i], profile.z[i]);
   for (double& distance : to) distance = std::abs(distance);
 }
 
@@ -232,9 +234,9 @@ struct SegmentFromPlane {
 SegmentFromPlane FromPlane(const RobustPlane& plane, const System& system, double alpha, const ProfileFactor& segment) {
   const ProfileInTable<double> in_table = system.At(alpha);
   const Eigen::Vector3d n = in_table.TurnedBack(plane.normal);
-  const double middle = segment(0, 2) / segment(0, 0);
-  const double at_origin =
-      n.dot(in_table.origin) - plane.normal.dot(plane.through) + n.dot(in_table.along_bend) * system.Bend(middle);
+  const double middle = segment(0, 2) / segment(0, 0), height = segment(0, 1) / segment(0, 0);
+  const double at_origin = n.dot(in_table.origin) - plane.normal.dot(plane.through) +
+                           n.dot(in_table.along_depth) * system.Bend(middle, height);
   const Eigen::Vector3d by(at_origin, n.dot(in_table.along_z), n.dot(in_table.along_y));  // of (1, z, y)
   const Eigen::Vector3d rotated = segment * by;
   SegmentFromPlane found{
@@ -296,6 +298,7 @@ PointsOnPlane SetAsideSegments(const RawScan& scan, const RobustPlane& plane, co
     else if (!kept.empty()) {
       left.compressed.push_back(MakeProfile(profile.alpha, profile.count - off, std::move(kept), std::nullopt));
       left.compressed.back().time = profile.time;
+      left.compressed.back().temperature = profile.temperature;
     }
   }
   return left;
@@ -390,6 +393,7 @@ PointsOnPlane SetAsideOffPlane(const RawScan& scan, const System& system) {
     if (rest.y.empty()) continue;
     left.compressed.push_back(CompressProfile(rest.alpha, rest.y, rest.z, rest.range));
     left.compressed.back().time = rest.time;
+    left.compressed.back().temperature = rest.temperature;
     left.changed.push_back(std::move(rest));
     left.profiles.push_back(&left.changed.back());
   }

@@ -110,9 +110,9 @@ class Bounds {
     return (2 * at - lowest_ - highest_) / Sides();
   }
   double Aspect() const { return Sides()[0] / Sides()[1]; }
+  Eigen::Array2d Sides() const { return (highest_ - lowest_).max(kNoExtent_mm); }
 
  private:
-  Eigen::Array2d Sides() const { return (highest_ - lowest_).max(kNoExtent_mm); }
   Eigen::Array2d lowest_ = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), highest_ = -lowest_;
 };
 
@@ -184,15 +184,15 @@ std::vector<Model::View> Views(const std::vector<Profile>& profiles, Model::Resi
   return views;
 }
 
-void AddForm(const std::vector<Profile>& profiles, const System& system, const Eigen::Vector3d& normal, double distance,
-             std::vector<Model::View>* views) {
+Eigen::Array2d AddForm(const std::vector<Profile>& profiles, const System& system, const Eigen::Vector3d& normal,
+                       double distance, std::vector<Model::View>* views) {
   const PlateFrame frame(normal);
   std::vector<ProfileInTable<double>> in_table;
   for (const Profile& profile : profiles) in_table.push_back(system.At(profile.alpha));
   // Where the line of sight meets the plane: at the measured point itself, its noise would be a form.
   const auto on_plate = [&](size_t k, const PseudoPoint& p) -> Eigen::Array2d {
     const ProfileInTable<double>& at = in_table[k];
-    const Eigen::Vector3d measured = at.Point(p.y, p.z, system.Bend(p.y));
+    const Eigen::Vector3d measured = at.Point(p.y, p.z, system.Bend(p.y, p.z));
     const Eigen::Vector3d sight =
         profiles[k].ranged ? Eigen::Vector3d(measured - at.Turned(at.origin)) : at.Turned(at.along_y);
     return frame.At(measured - (normal.dot(measured) - distance) / normal.dot(sight) * sight).array();
@@ -208,26 +208,31 @@ void AddForm(const std::vector<Profile>& profiles, const System& system, const E
       return Eigen::Map<const Eigen::RowVectorXd>(FormModesAt(at[0], at[1], plate.Aspect()).data(), kFormModes);
     });
   }
+  return plate.Sides();
 }
 
 void AddBend(const System& system, const std::vector<Profile>& profiles, std::vector<Model::View>* views) {
   for (size_t k = 0; k < profiles.size(); ++k) {
     Model::View& view = (*views)[k];
-    view.bend = AsLine(profiles[k], view, 1, [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
-      return Eigen::RowVectorXd::Constant(1, system.Bend(p.y));
+    view.bend = AsLine(profiles[k], view, std::ssize(Model::kBends), [&](const PseudoPoint& p) -> Eigen::RowVectorXd {
+      return Eigen::Map<const Eigen::RowVectorXd>(system.Shapes(p.y, p.z).data(), std::ssize(Model::kBends));
     });
   }
 }
 
 std::vector<Model::View> PlaneViews(const std::vector<Profile>& profiles, const System& system) {
   std::vector<Model::View> views = Views(profiles, Model::Residuals::kPlane);
-  if (system[Model::kLinearity] != 0) AddBend(system, profiles, &views);
+  if (system.Bends()) AddBend(system, profiles, &views);
   return views;
 }
 
-Eigen::Vector3d PointOf(const ProfileInTable<double>& in_table, const Model::View& profile, Eigen::Index point) {
+Eigen::Vector3d PointOf(const System& system, const ProfileInTable<double>& in_table, const Model::View& profile,
+                        Eigen::Index point) {
   const PseudoPoint& p = profile.points[point];
-  return in_table.Point(p.y, p.z, profile.bend.size() ? profile.bend[point] / p.weight : 0);
+  double bend = 0;
+  for (size_t k = 0; k < Model::kBends.size() && profile.bend.size(); ++k)
+    bend += system[Model::kBends[k]] * profile.bend(point, static_cast<Eigen::Index>(k)) / p.weight;
+  return in_table.Point(p.y, p.z, bend);
 }
 
 }  // namespace scancal::turntable

@@ -41,10 +41,14 @@ class Gatherer {
  public:
   explicit Gatherer(const std::filesystem::path& path) : path_(path) {}
 
-  Result<void> Add(double alpha, const double* key, const double* time, double y, double z, const double* range) {
+  Result<void> Add(double alpha, const double* key, const double* time, double temperature, double y, double z,
+                   const double* range) {
     const size_t before = begun_;
     RawProfile* profile = key ? ByKey(*key, alpha) : ByAngle(alpha);
-    if (begun_ > before) profile->time = time ? *time : static_cast<double>(before);
+    if (begun_ > before) {
+      profile->time = time ? *time : static_cast<double>(before);
+      profile->temperature = temperature;
+    }
     by_key_ = key != nullptr;
     if (profile->alpha != alpha) {
       return Error{fmt::format("{}: profile {:g}: found angles {:.9g} and {:.9g} rad, expected one angle a profile",
@@ -79,7 +83,7 @@ class Gatherer {
   RawProfile* ByAngle(double alpha) {
     if (profiles_.empty() || profiles_.back().alpha != alpha) {
       const size_t like_the_last = profiles_.empty() ? 0 : profiles_.back().y.size();
-      profiles_.push_back({static_cast<double>(begun_++), alpha, {}, {}, {}, 0});
+      profiles_.push_back({static_cast<double>(begun_++), alpha, {}, {}, {}, 0, 0});
       profiles_.back().y.reserve(like_the_last);
       profiles_.back().z.reserve(like_the_last);
     }
@@ -88,7 +92,7 @@ class Gatherer {
   RawProfile* ByKey(double key, double alpha) {
     if (!profiles_.empty() && profiles_[last_].key == key) return &profiles_[last_];
     const auto [found, fresh] = index_.try_emplace(key, profiles_.size());
-    if (fresh) profiles_.push_back({key, alpha, {}, {}, {}, 0});
+    if (fresh) profiles_.push_back({key, alpha, {}, {}, {}, 0, 0});
     begun_ += fresh;
     last_ = found->second;
     return &profiles_[last_];
@@ -182,13 +186,14 @@ Result<RawScan> ReadScan(const ScanDeclaration& scan, const Senses& senses,
     if (!more) break;
     ToSensor(senses, batch, &points);
     SCANCAL_ASSIGN_OR_RETURN(const std::vector<char> kept, Kept(scan, batch, points));
-    const int profile = batch.Find("profile"), time = batch.Find("time");
+    const int profile = batch.Find("profile"), time = batch.Find("time"), temperature = batch.Find("temperature");
     result.timed |= time >= 0;
     for (size_t i = 0; i < batch.size(); ++i) {
       if (!kept[i]) continue;
       SCANCAL_RETURN_IF_ERROR(gatherer.Add(points.alpha[i], profile >= 0 ? &batch.columns[profile][i] : nullptr,
-                                           time >= 0 ? &batch.columns[time][i] : nullptr, points.y[i], points.z[i],
-                                           points.range.empty() ? nullptr : &points.range[i]));
+                                           time >= 0 ? &batch.columns[time][i] : nullptr,
+                                           temperature >= 0 ? batch.columns[temperature][i] : 0, points.y[i],
+                                           points.z[i], points.range.empty() ? nullptr : &points.range[i]));
     }
     if (gatherer.points() > kHeldPoints && !gatherer.by_key() && !gatherer.ranged()) {
       result.holds_points = false;

@@ -18,6 +18,15 @@ constexpr Message<> kPlaneIsBiased{
     "point-to-plane residuals are biased by the noise along depth; the depth residual is not",
     "Residuen als Abstand Punkt–Ebene werden durch das Rauschen längs der Tiefe systematisch verfälscht, "
     "Tiefenresiduen nicht"};
+constexpr Message<> kPlateCutOff{
+    "turntable.plate_cut_off",
+    "one_plate: the placements do not show the same rectangle of the plate, so its edges are not in view, and its form "
+    "is "
+    "not the same function in each; for each parameter the worse of one form and of several was taken",
+    "one_plate: Die Aufstellungen zeigen nicht dasselbe Rechteck der Platte; ihre Kanten sind also nicht im Bild, und "
+    "ihre "
+    "Form ist nicht in jeder dieselbe Funktion. Für jeden Parameter wurde das Ungünstigere aus einer Form und mehreren "
+    "genommen"};
 const char kSearching[] = "searching M, N";
 constexpr int kRoundsOfReading = 4;
 constexpr double kNodesOfReading = 60;  // a side
@@ -95,7 +104,9 @@ GridBox Scanner::Box() const { return BoxOf(declaration_, model_); }
 
 System Scanner::Declared() const {
   System system = DeclaredOf(model_);
-  system.depths = VolumeOf(placements_).y;
+  const ScannedVolume volume = VolumeOf(placements_);
+  system.depths = volume.y;
+  system.heights = volume.z;
   return system;
 }
 
@@ -142,6 +153,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
                      {.max_iterations = choice.max_iterations});
   SCANCAL_RETURN_IF_ERROR(CheckDetermined(fit));
   if (weighted) fit = FitWeighted(fit, choice.max_iterations);
+  const std::optional<Sentence> between = ConsiderDriftBetweenScans(declaration_.drift_declared, &fit);
   const double seconds = watch.Seconds();
 
   // Within a profile the plain residual repeats as the depth does, seen at an angle: its pure error is not comparable.
@@ -169,6 +181,11 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   }
   if (plane) result.warnings.push_back(Say(kPlaneIsBiased));
   Judge(box, placements_, SearchKnowing(found, start), fit, &result);
+  result.notes.insert(result.notes.begin(), declaration_.notes.begin(), declaration_.notes.end());
+  if (between) result.notes.push_back(*between);
+  if (fit.plate_cut_off) result.notes.push_back(Say(kPlateCutOff));
+  if (const std::optional<Sentence> drift = NoteOnDrift(fit)) result.notes.push_back(*drift);
+  JudgeCurvature(placements_, fit, &result);
   JudgeMirrorImage(declaration_.depth_declared, box, placements_, &result);
   AddVolume(placements_, &result);
   if (choice.figures) AddSurface(box, start.storeys, StoreysOf(placements_, found), &result);
@@ -193,6 +210,14 @@ Result<std::unique_ptr<Scanner>> Compress(const Declaration& declaration, const 
   const GridBox box = BoxOf(declaration, model);
   System system = MiddleOf(box, DeclaredOf(model));
   system.depths = DepthsOf(scans);
+  for (const RawScan& scan : scans) {
+    for (const Profile& profile : scan.compressed) {
+      const auto [low, high] = Ends(profile.factor);
+      system.heights = system.heights == std::array<double, 2>{}
+                           ? std::array{low.z, high.z}
+                           : std::array{std::min(system.heights[0], low.z), std::max(system.heights[1], high.z)};
+    }
+  }
   std::vector<PointsOnPlane> points;
   std::vector<Placement> placements;
   for (int round = 0; round < kRoundsOfReading; ++round) {

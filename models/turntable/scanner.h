@@ -24,7 +24,8 @@ struct JointFit {
   std::vector<Model::Target> targets;  // as they entered: the planes from which normal_1, normal_2, distance count
   Solution solution;
   double sigma = 1;  // by which the rows were divided, mm
-  std::array<double, 2> depths{};
+  std::array<double, 2> depths{}, heights{};
+  bool plate_cut_off = false;  // one_plate was declared, but the placements do not show the same rectangle of it
   System Found() const;
   std::pair<Eigen::Vector3d, double> Plane(size_t target) const;
 };
@@ -88,6 +89,17 @@ Result<void> CheckDetermined(const JointFit& fit);
 // knows what was found besides M and N.
 void Judge(const GridBox& box, const std::vector<Placement>& placements, const GridResult& grid, const JointFit& fit,
            Calibration* calibration);
+
+// What a drift of the depth would move M and N by, where sweeps go one way and nobody has declared one: nothing if they
+// tell it, or it is declared.
+std::optional<Sentence> NoteOnDrift(const JointFit& fit);
+
+// Whether all profiles are bent alike, as by the lens, by so much that M or N would be wrong by more than u.
+void JudgeCurvature(const std::vector<Placement>& placements, const JointFit& fit, Calibration* calibration);
+
+// Where sweeps told a drift: whether it goes on from scan to scan, or begins anew, they did not. Considers `drift` with
+// u = n |drift_sweep| / sqrt(3) for n targets, and says so; nothing where it is declared, or no drift was found.
+std::optional<Sentence> ConsiderDriftBetweenScans(bool declared, JointFit* fit);
 
 // Where the search holds (-M, -N), too, and nobody has said which way depth grows.
 void JudgeMirrorImage(bool depth_declared, const GridBox& box, const std::vector<Placement>& placements,

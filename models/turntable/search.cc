@@ -84,7 +84,7 @@ PlaneStorey::PlaneStorey(const std::vector<Profile>& profiles, const System& sys
     const ProfileInTable<double> in_table = at_axis.At(profile.alpha);
     const Eigen::Vector3d p_M = at_one.At(profile.alpha).Point(0, 0, 0);  // p_N is p_M a quarter turn on
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-      const Eigen::Vector3d p0 = PointOf(in_table, profile, i);
+      const Eigen::Vector3d p0 = PointOf(system, in_table, profile, i);
       rows.row(i) << 1, p_M[0], -p_M[1], p0[0], p0[1], p0[2];
       rows.row(i) *= profile.points[i].weight;
     }

@@ -21,7 +21,8 @@ constexpr int kNewtonSteps = 10, kRounds = 4;
 constexpr double kSettled_mm = 1e-9;
 constexpr double kLeastHalf = 1;  // mm: of what is seen of a plate by a single profile or point
 // Placements have the streams 1, 2, ...
-constexpr uint64_t kFormStreams = uint64_t{1} << 32, kBackgroundStreams = uint64_t{2} << 32;
+constexpr uint64_t kFormStreams = uint64_t{1} << 32, kBackgroundStreams = uint64_t{2} << 32,
+                   kOffsetStreams = uint64_t{3} << 32;
 
 struct Plate {
   Eigen::Vector3d normal, centre, across, up;
@@ -42,7 +43,7 @@ Plate PlacePlate(const Scene& scene, int placement) {
   Plate plate;
   plate.normal = {std::sin(turn) * std::cos(lean), -std::cos(turn) * std::cos(lean), std::sin(lean)};
   System straight = scene.system;
-  straight[Model::kLinearity] = 0;
+  for (const Model::Index k : Model::kBends) straight[k] = 0;
   plate.centre = straight.Point(0, kStandoff, 0);
   plate.across = plate.normal.cross(Eigen::Vector3d::UnitZ()).normalized();
   plate.up = plate.across.cross(plate.normal);
@@ -56,7 +57,7 @@ double ShownDepth(const System& system, const Plate& plate, double alpha, double
   const double by_y = plate.normal.dot(in_table.Turned(in_table.along_y));
   double y = 0;
   for (int k = 0; k < kNewtonSteps; ++k) {
-    const Eigen::Vector3d p = in_table.Point(y, z, k == 0 ? 0 : system.Bend(y)) - plate.centre;
+    const Eigen::Vector3d p = in_table.Point(y, z, k == 0 ? 0 : system.Bend(y, z)) - plate.centre;
     const double height = k == 0 ? 0 : plate.form.At(plate.across.dot(p), plate.up.dot(p));
     const double step = (height - plate.normal.dot(p)) / by_y;
     y += step;
@@ -70,12 +71,20 @@ double Spread(double extent, int index, int count) {
   return count == 1 ? 0 : extent * (static_cast<double>(index) / (count - 1) - 0.5);
 }
 
+// Where the table stands at a profile.
+double AlphaOf(const Scene& scene, int profile) {
+  if (!scene.back) return Spread(scene.sweep, profile, scene.profiles);
+  const int there = (scene.profiles + 1) / 2;
+  return profile < there ? Spread(scene.sweep, profile, there)
+                         : -Spread(scene.sweep, profile - there, std::max(1, scene.profiles - there));
+}
+
 // What the scan sees of the plate, were it flat.
 PlateRectangle ScannedRectangle(const Scene& scene, const System& system, const Plate& flat) {
   Eigen::AlignedBox2d box;
   for (int i = 0; i < scene.profiles; ++i) {
     for (int j = 0; j < scene.points; ++j) {
-      const double alpha = Spread(scene.sweep, i, scene.profiles), z = Spread(scene.line_length, j, scene.points);
+      const double alpha = AlphaOf(scene, i), z = Spread(scene.line_length, j, scene.points);
       const Eigen::Vector3d p = system.Point(alpha, ShownDepth(system, flat, alpha, z), z) - flat.centre;
       box.extend(Eigen::Vector2d(flat.across.dot(p), flat.up.dot(p)));
     }
@@ -132,6 +141,8 @@ Result<void> CheckNumbers(const Scene& scene) {
     return Error{"outliers, background and missing: expected shares from 0 to below 1"};
   if (!not_negative(scene.noise_y) || !not_negative(scene.encoder_jitter) || !not_negative(scene.form))
     return Error{"noise, jitter and form: expected numbers that are not negative"};
+  if (!(std::abs(scene.profile_correlation) < 1) || !not_negative(scene.profile_offset))
+    return Error{"profile offset and correlation: expected 0 or more, and less than 1"};
   if (!(scene.line_correlation >= 1)) return Error{"line correlation: expected 1 (white) or more points"};
   if (!(scene.sweep >= 0 && scene.sweep < std::numbers::pi)) return Error{"sweep: expected 0 to below 180 deg"};
   if (!(scene.line_length > 0)) return Error{"line length: expected more than 0 mm"};
@@ -192,12 +203,15 @@ Result<void> WriteNpy(const SimulatedPlacement& placement, OutputFile* file) {
 
 std::string Influences(const Scene& scene) {
   std::string list;
-  for (const auto& [name, u] :
-       {std::pair{"noise_y", scene.noise_y}, {"encoder_jitter", scene.encoder_jitter / kDegree}, {"form", scene.form}})
+  for (const auto& [name, u] : {std::pair{"noise_y", scene.noise_y},
+                                {"encoder_jitter", scene.encoder_jitter / kDegree},
+                                {"form", scene.form},
+                                {"drift_sweep", std::abs(scene.drift_sweep)},
+                                {"drift", std::abs(scene.drift)}})
     if (u > 0) list += fmt::format("{}{}: {:g}", list.empty() ? "" : ", ", name, u);
   if (scene.line_correlation > 1)
     list += fmt::format("{}line_correlation: {:g}", list.empty() ? "" : ", ", scene.line_correlation);
-  if (scene.one_plate && scene.form > 0) list += ", one_plate: yes";
+  if (scene.form > 0) list += scene.one_plate ? ", one_plate: yes" : ", one_plate: no";
   return list.empty() ? "" : "influences: {" + list + "}\n";
 }
 
@@ -221,10 +235,16 @@ Json Truth(const Scene& scene, const std::vector<SimulatedPlacement>& placements
   truth["units"] = "mm, rad";
   const Quantities quantities = Model(Model::Residuals::kDepth).quantities();
   for (size_t k = 0; k < scene.system.q.size(); ++k) truth[quantities[k].name] = scene.system[k];
-  if (scene.system[Model::kLinearity] != 0) truth["linearity_depths"] = WithDepths(scene).depths;
+  if (scene.system.Bends()) truth["linearity_depths"] = WithDepths(scene).depths;
   truth["noise_y"] = scene.noise_y;
   truth["line_correlation"] = scene.line_correlation;
   truth["encoder_jitter"] = scene.encoder_jitter;
+  for (const auto& [name, value] : {std::pair{"drift_sweep", scene.drift_sweep},
+                                    {"drift", scene.drift},
+                                    {"angle_step", scene.angle_step},
+                                    {"profile_offset", scene.profile_offset},
+                                    {"profile_correlation", scene.profile_correlation}})
+    if (value != 0) truth[name] = value;
   truth["form"] = scene.form;
   if (scene.form > 0) {
     truth["form_kind"] = scene.form_kind == FormKind::kModes    ? "modes"
@@ -248,8 +268,8 @@ Json Truth(const Scene& scene, const std::vector<SimulatedPlacement>& placements
 
 System WithDepths(const Scene& scene) {
   System system = scene.system, shown = scene.system;
-  if (system[Model::kLinearity] == 0) return system;
-  shown[Model::kLinearity] = 0;
+  if (!system.Bends()) return system;
+  for (const Model::Index k : Model::kBends) shown[k] = 0;
   for (int round = 0; round < kRounds; ++round) {  // the depths that are shown depend on linearity a little
     std::vector<Placement> placements(static_cast<size_t>(scene.placements));
     for (int k = 0; k < scene.placements; ++k) {
@@ -265,6 +285,7 @@ System WithDepths(const Scene& scene) {
       }
     }
     system.depths = VolumeOf(placements).y;
+    system.heights = VolumeOf(placements).z;
     shown = system;
   }
   return system;
@@ -289,16 +310,22 @@ std::vector<SimulatedPlacement> Simulate(const Scene& scene) {
     placement.name = NameOf(k, scene.placements);
     placement.normal = plate.normal;
     placement.distance = plate.normal.dot(plate.centre);
+    Random offsets(scene.seed, kOffsetStreams + static_cast<uint64_t>(k));
+    double offset = 0;
     for (int i = 0; i < scene.profiles; ++i) {
-      const double alpha = Spread(scene.sweep, i, scene.profiles);
+      const double alpha = AlphaOf(scene, i), elapsed = scene.profiles > 1 ? i / (scene.profiles - 1.0) : 0;
       SimulatedProfile& profile = placement.profiles.emplace_back();
       profile.alpha = alpha + scene.encoder_jitter * random.Normal();
+      if (scene.angle_step > 0) profile.alpha = std::round(profile.alpha / scene.angle_step) * scene.angle_step;
+      const double kept = i == 0 ? 0 : scene.profile_correlation;
+      offset = kept * offset + std::sqrt(1 - kept * kept) * scene.profile_offset * offsets.Normal();
+      const double drifted = scene.drift_sweep * elapsed + scene.drift * (k + elapsed) / scene.placements + offset;
       background.NextProfile();
       double noise = random.Normal();
       for (int j = 0; j < scene.points; ++j) {
         const double z = Spread(scene.line_length, j, scene.points);
         if (j > 0) noise = correlation * noise + std::sqrt(1 - correlation * correlation) * random.Normal();
-        double y = ShownDepth(system, plate, alpha, z) + background.Behind(j) + scene.noise_y * noise;
+        double y = ShownDepth(system, plate, alpha, z) + background.Behind(j) + scene.noise_y * noise + drifted;
         // The same number of draws for every point, so that one kind of error does not shift the others.
         const double spike = random.Uniform(), how_far = random.Uniform(), lost = random.Uniform();
         if (spike < scene.outliers) y += kSpike * (2 * how_far - 1);

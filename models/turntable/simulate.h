@@ -49,13 +49,18 @@ class PlateForm {
 struct Scene {
   System system{{123, 409}, {}};  // its depths follow from the scene: WithDepths
   int placements = 3;
-  int profiles = 200, points = 200;  // per placement, per profile
-  double sweep = 30 * kDegree;       // rad, from -sweep/2 to sweep/2
-  double line_length = 200;          // mm, along z
-  double noise_y = 0.05;             // mm, standard deviation along depth
-  double line_correlation = 1;       // points: integrated correlation length of that noise; 1 = white
-  double encoder_jitter = 0;         // rad, one error a profile
-  double form = 0;                   // mm rms: smooth deviation of the plate over what the scan sees of it
+  int profiles = 200, points = 200;   // per placement, per profile
+  double sweep = 30 * kDegree;        // rad, from -sweep/2 to sweep/2
+  double line_length = 200;           // mm, along z
+  double noise_y = 0.05;              // mm, standard deviation along depth
+  double line_correlation = 1;        // points: integrated correlation length of that noise; 1 = white
+  double encoder_jitter = 0;          // rad, one error a profile
+  bool back = false;                  // the second half of the profiles sweeps back
+  double drift_sweep = 0, drift = 0;  // mm, by which the depth that is shown grows over each sweep, over all of them
+  double angle_step = 0;              // rad, to which the angle that is written is rounded; 0: not
+  double profile_offset = 0;          // mm, standard deviation: of depth, common to a profile
+  double profile_correlation = 0;     // of that between neighbouring profiles of a sweep
+  double form = 0;                    // mm rms: smooth deviation of the plate over what the scan sees of it
   FormKind form_kind = FormKind::kModes;
   bool one_plate = false;                     // the same form in every placement, not one of its own
   double outliers = 0;                        // share of points that are spikes within +-30 mm of the plate

@@ -57,7 +57,14 @@ std::vector<std::vector<Piece>> PiecesOf(const FittedPlacement& fitted) {
   const std::vector<Profile>& profiles = fitted.placement.profiles;
   const std::vector<Profile> segments = SegmentsOf(profiles);
   std::vector<Model::View> views = CentresOf(segments);
-  if (q[Model::kLinearity] != 0) AddBend(fitted.system, segments, &views);
+  if (fitted.system.Bends()) AddBend(fitted.system, segments, &views);
+  // A segment moves as its profile does.
+  size_t of = 0;
+  for (size_t p = 0; p < profiles.size(); ++p)
+    for (size_t k = 0; k < profiles[p].segments.size(); ++k, ++of) {
+      views[of].motion = fitted.target.views[p].motion;
+      views[of].line = Eigen::RowVector2d(views[of].points[0].weight, 0);
+    }
   if (std::any_of(q.q + Model::kForm, q.q + Model::kForm + kFormModes, [](double form) { return form != 0; })) {
     const auto [normal, distance] = Model::Plane(fitted.target, Eigen::Vector3d::Map(q.q + Model::kNormal1));
     AddForm(segments, fitted.system, normal, distance, &views);

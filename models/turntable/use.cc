@@ -122,9 +122,12 @@ Result<System> SystemOf(const Calibration& calibration) {
     }
   }
   const std::optional<ScannedVolume> volume = VolumeOf(calibration);
-  if (system[Model::kLinearity] != 0 && !volume)
+  if (system.Bends() && !volume)
     return Error{"the calibration has a linearity, but no volume to tell the range of depths; refine the data again"};
-  if (volume) system.depths = volume->y;
+  if (volume) {
+    system.depths = volume->y;
+    system.heights = volume->z;
+  }
   return system;
 }
 

@@ -18,6 +18,9 @@ class Meat {
     it->second.second += scores * scores.transpose();
     if (fresh) order_.push_back(source);
   }
+  void AddAcross(const std::string& source, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+    lines_.at(source).second += a * b.transpose() + b * a.transpose();
+  }
   void AddPrior(const std::string& name, Scope scope, const Eigen::MatrixXd& scores) {
     Add(name, scope, scores);
     priors_.insert(name);
@@ -38,6 +41,15 @@ class Meat {
   std::set<std::string> priors_;
 };
 
+// A bound of both for every quantity: the one that is larger on the whole, and on its diagonal what it lacks.
+Eigen::MatrixXd Worse(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  const Eigen::VectorXd of_a = a.diagonal().cwiseMax(1e-300), of_b = b.diagonal().cwiseMax(1e-300);
+  const bool b_is_larger = of_b.cwiseQuotient(of_a).array().log().sum() > 0;
+  Eigen::MatrixXd worse = b_is_larger ? b : a;
+  worse.diagonal() = of_a.cwiseMax(of_b);
+  return worse;
+}
+
 }  // namespace
 
 Eigen::MatrixXd Budget::Total() const {
@@ -52,12 +64,13 @@ Budget BudgetOf(const Problem& problem, const Estimate& fit, const Linearization
       problem.With({Scope::kSystem, Scope::kTarget, Scope::kView, Scope::kPoint}, Role::kConsider);
   const Eigen::Index system = linear.factor.cols(), n = std::ssize(influences);
   const auto influence = [&](Eigen::Index k) -> const Quantity& { return problem.quantities[influences[k]]; };
-  Meat meat(system);
+  Meat meat(system), shared(system);
   Eigen::MatrixXd of_system = Eigen::MatrixXd::Zero(system, n);  // scores of what the whole system shares
   for (size_t t = 0; t < problem.targets.size(); ++t) {
     const LinearTarget& target = linear.targets[t];
     const std::vector<double> q = Values(problem, fit, t);
     Eigen::MatrixXd of_target = Eigen::MatrixXd::Zero(system, n);
+    Eigen::MatrixXd before = Eigen::MatrixXd::Zero(system, n);  // sum of rho^distance times the views before
     for (size_t v = 0; v < problem.targets[t].views.size(); ++v) {
       const Block& view = problem.targets[t].views[v];
       const Eigen::MatrixXd left = target.system_left.middleRows(target.first[v], view.size()).transpose();
@@ -72,6 +85,10 @@ Budget BudgetOf(const Problem& problem, const Estimate& fit, const Linearization
         const Eigen::MatrixXd scores = weighted * Instances(b.col(k) * quantity.u, view.rows->points(), quantity.scope);
         if (quantity.scope == Scope::kView || quantity.scope == Scope::kPoint) {
           meat.Add(quantity.Source(), quantity.scope, scores);
+          if (quantity.neighbour == 0) continue;
+          before.col(k) *= quantity.neighbour;
+          meat.AddAcross(quantity.Source(), before.col(k), scores);
+          before.col(k) += scores;
         } else {
           of_target.col(k) += scores;
         }
@@ -83,11 +100,16 @@ Budget BudgetOf(const Problem& problem, const Estimate& fit, const Linearization
   }
   for (Eigen::Index k = 0; k < n; ++k)
     if (influence(k).scope == Scope::kSystem) meat.Add(influence(k).Source(), Scope::kSystem, of_system.col(k));
+  for (Eigen::Index k = 0; k < n; ++k)
+    if (influence(k).perhaps_shared) shared.Add(influence(k).Source(), Scope::kTarget, of_system.col(k));
   for (size_t p = 0; p < problem.priors.size(); ++p)
     meat.AddPrior(problem.priors[p].prior, Scope::kSystem,
                   linear.targets.back().system_left.row(static_cast<Eigen::Index>(p)).transpose());
   const Eigen::MatrixXd h_inverse = InverseInformation(linear);
   Budget budget = meat.Between(h_inverse);
+  for (const Contribution& one : shared.Between(h_inverse).lines)
+    for (Contribution& line : budget.lines)
+      if (line.source == one.source && !line.prior) line.covariance = Worse(line.covariance, one.covariance);
   for (Eigen::Index k = 0; k < n; ++k) {
     const Quantity& quantity = influence(k);
     const auto of_source = std::count_if(influences.begin(), influences.end(), [&](int other) {

@@ -22,7 +22,9 @@ struct Considered {
 
 Considered ConsideredScores(const Problem& problem, const Estimate& fit, const Linearization& linear) {
   const std::vector<int> of_target = problem.With({Scope::kTarget}, Role::kConsider);
-  const std::vector<int> of_system = problem.With({Scope::kSystem}, Role::kConsider);
+  std::vector<int> of_system = problem.With({Scope::kSystem}, Role::kConsider);
+  for (const int k : of_target)
+    if (problem.quantities[k].perhaps_shared) of_system.push_back(k);  // as both
   std::vector<int> seeds = of_target;
   seeds.insert(seeds.end(), of_system.begin(), of_system.end());
   Eigen::VectorXd u(std::ssize(seeds));
@@ -113,7 +115,8 @@ Jackknife LeaveOneTargetOut(const Problem& problem, const Fit& fit, const Linear
   return result;
 }
 
-ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate& fit, const Linearization& linear) {
+ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate& fit, const Linearization& linear,
+                                          double scatter) {
   const Considered considered = ConsideredScores(problem, fit, linear);
   const std::vector<TargetScores> scores = ScoresByTarget(problem, linear);
   const Eigen::MatrixXd inverse = InverseInformation(linear);
@@ -141,7 +144,7 @@ ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate
     for (size_t j = 0; j < m; ++j) {
       const auto block = rows.middleCols(static_cast<Eigen::Index>(j) * n, n);
       const Eigen::MatrixXd of_own = block * considered.own[j];
-      covariance += block * scores[j].meat * block.transpose() + of_own * of_own.transpose();
+      covariance += scatter * block * scores[j].meat * block.transpose() + of_own * of_own.transpose();
     }
     const Eigen::MatrixXd of_all = rows * considered.common;
     covariance += of_all * of_all.transpose();
@@ -152,7 +155,7 @@ ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate
 }
 
 std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit, const Linearization& linear,
-                                    double noise_dof) {
+                                    double noise_dof, double scatter) {
   constexpr double kShared = 1e-4;  // of a direction's information: less is told by the one side only
   const size_t m = problem.targets.size();
   std::vector<TargetTest> tests(m);
@@ -180,7 +183,7 @@ std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit,
     const Eigen::ArrayXd part = eigen.values(shared).array();
     const Eigen::MatrixXd basis = eigen.vectors(Eigen::all, shared);
     const Eigen::VectorXd score = basis.transpose() * (rows * target.r);
-    const Eigen::VectorXd of_noise = part * (1 - part);
+    const Eigen::VectorXd of_noise = scatter * part * (1 - part);
     Eigen::MatrixXd covariance = of_noise.asDiagonal();
     // What moves the scores of target j moves this one's through the joint fit as well.
     const auto add = [&](const Eigen::MatrixXd& own, const Eigen::MatrixXd& all) {

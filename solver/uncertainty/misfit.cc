@@ -91,6 +91,12 @@ Eigen::MatrixXd ConsideredColumns(const Problem& problem, const std::vector<Sour
       u[k] = problem.quantities[quantities[static_cast<size_t>(k) % quantities.size()]].u;
     considered.conservativeResize(Eigen::NoChange, before + more);
     considered.rightCols(more) = columns[s].left * u.asDiagonal();
+    if (!problem.quantities[quantities[0]].perhaps_shared) continue;
+    const auto members = std::ssize(quantities);
+    Eigen::MatrixXd one = Eigen::MatrixXd::Zero(rows, members);
+    for (Eigen::Index first = 0; first < more; first += members) one += considered.middleCols(before + first, members);
+    considered.conservativeResize(Eigen::NoChange, before + more + members);
+    considered.rightCols(members) = one;
   }
   return considered;
 }
@@ -115,7 +121,7 @@ struct Visible {
   Eigen::MatrixXd covariance;
 };
 
-Visible VisibleOf(const Columns& columns, const Eigen::VectorXd& r, const Eigen::MatrixXd& considered) {
+Visible VisibleOf(const Columns& columns, const Eigen::VectorXd& r, const Eigen::MatrixXd& considered, double scatter) {
   const ThinQr qr = QrOf(columns.left);
   const Eigen::Index n = columns.left.cols();
   const Svd svd = SvdOf(qr.r);
@@ -128,7 +134,7 @@ Visible VisibleOf(const Columns& columns, const Eigen::VectorXd& r, const Eigen:
   Visible visible;
   visible.directions = svd.v.leftCols(rank);
   visible.value = fitted(r);
-  visible.covariance = inverse.cwiseAbs2().asDiagonal();
+  visible.covariance = (scatter * inverse.cwiseAbs2()).asDiagonal();
   if (considered.cols() > 0 && rank > 0) {
     const Eigen::MatrixXd of_considered = fitted(considered);
     visible.covariance += of_considered * of_considered.transpose();
@@ -139,7 +145,7 @@ Visible VisibleOf(const Columns& columns, const Eigen::VectorXd& r, const Eigen:
 }  // namespace
 
 std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit, const Linearization& linear,
-                                    double noise_dof) {
+                                    double noise_dof, double scatter) {
   std::vector<MisfitTest> misfits;
   if (!(noise_dof >= 1)) return misfits;
   const Eigen::VectorXd r = Residuals(linear);
@@ -149,7 +155,7 @@ std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit,
   const Eigen::MatrixXd considered = ConsideredColumns(problem, sources, columns, r.size());
   for (size_t s = 0; s < sources.size(); ++s) {
     if (!(columns[s].length > 0) || columns[s].left.cols() > r.size()) continue;
-    const Visible visible = VisibleOf(columns[s], r, considered);
+    const Visible visible = VisibleOf(columns[s], r, considered, scatter);
     if (visible.value.size() == 0) continue;
     const Quantity& quantity = problem.quantities[sources[s].quantities[0]];
     MisfitTest& misfit = misfits.emplace_back();
@@ -178,7 +184,8 @@ std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit,
 }
 
 Change FindChange(const Problem& problem, const Estimate& fit, const Linearization& linear, double noise_dof,
-                  const std::vector<std::pair<size_t, size_t>>& order, const std::vector<int>& quantities) {
+                  double scatter, const std::vector<std::pair<size_t, size_t>>& order,
+                  const std::vector<int>& quantities) {
   Change best;
   const auto n = std::ssize(quantities);
   if (!(noise_dof >= 1) || n == 0) return best;
@@ -232,7 +239,7 @@ Change FindChange(const Problem& problem, const Estimate& fit, const Linearizati
     ++places;
     const Eigen::MatrixXd basis = eigen.vectors(Eigen::all, seen);
     const Eigen::MatrixXd score = basis.transpose() * scale.asDiagonal() * on_data;
-    Eigen::MatrixXd covariance = eigen.values(seen).asDiagonal();
+    Eigen::MatrixXd covariance = (scatter * eigen.values(seen)).asDiagonal();
     covariance += score.rightCols(considered.cols()) * score.rightCols(considered.cols()).transpose();
     const double dof = static_cast<double>(seen.size());
     const double F = score.col(0).dot(Eigen::LLT<Eigen::MatrixXd>(covariance).solve(score.col(0))) / dof;
@@ -244,6 +251,12 @@ Change FindChange(const Problem& problem, const Estimate& fit, const Linearizati
   }
   best.p = std::min(1.0, best.p * places);
   return best;
+}
+
+bool Neighbours::IsSignificant() const {
+  constexpr double kFarFromIndependent = 4;  // standard errors
+  constexpr double kLeastCorrelation = 0.1;
+  return correlation >= std::max(kFarFromIndependent * standard_error, kLeastCorrelation);
 }
 
 Neighbours CorrelationOfNeighbours(const Problem& problem, const Estimate& fit, const Linearization& linear) {

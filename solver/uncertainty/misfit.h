@@ -13,8 +13,9 @@ namespace scancal {
 // was considered, itself among it, makes of m. F = m' (cov m)^-1 m / dof1; p after Bonferroni, for all that were
 // tested. The problem is weighed with its noise; linear: of the views, at the fit. noise_dof: degrees of freedom of
 // that noise.
+// scatter: of neighbours that err alike, ScatterOfNeighbours; the noise counts so many times.
 std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit, const Linearization& linear,
-                                    double noise_dof);
+                                    double noise_dof, double scatter = 1);
 
 // Did something change in between? From some view on, in the order of time, these quantities may have had other values:
 // their columns from there on are tested as above, at every place that leaves a twentieth of the views on either side,
@@ -28,7 +29,8 @@ struct Change {
   std::vector<double> moves;  // per estimated parameter: what the step has moved it by
 };
 Change FindChange(const Problem& problem, const Estimate& fit, const Linearization& linear, double noise_dof,
-                  const std::vector<std::pair<size_t, size_t>>& order, const std::vector<int>& quantities);
+                  double scatter, const std::vector<std::pair<size_t, size_t>>& order,
+                  const std::vector<int>& quantities);
 
 // Are views independent of each other, as everything here counts them? Correlation between neighbouring views of a
 // target, pooled over targets and over everything of view scope: with z_v the whitened residual of view v along the
@@ -36,6 +38,7 @@ Change FindChange(const Problem& problem, const Estimate& fit, const Linearizati
 // 1). The standard error is that of independent pairs, from their own spread: effects may look alike.
 struct Neighbours {
   double correlation = 0, standard_error = 0;
+  bool IsSignificant() const;  // 4 standard errors, and makes u too small by a tenth
 };
 Neighbours CorrelationOfNeighbours(const Problem& problem, const Estimate& fit, const Linearization& linear);
 

@@ -142,7 +142,7 @@ DrawnProblem::DrawnProblem(const Problem& problem, const Estimate& fit, const Va
       if (fresh) variance_dof_.push_back(std::max(kLeastDof, dof->second));
       variance = it->second;
     }
-    influences_.push_back({k, q.scope, q.u, variance, q.u});
+    influences_.push_back({k, q.scope, q.u, variance, q.u, q.neighbour});
   }
   for (size_t t = 0; t < problem_.targets.size(); ++t) {
     Target& target = problem_.targets[t];
@@ -172,14 +172,20 @@ void DrawnProblem::Draw(Random* random) {
   for (Influence& influence : influences_)
     if (influence.variance >= 0) influence.drawn_u = influence.u * std::sqrt(variances[influence.variance]);
   const auto draw = [&](Scope scope, double* to) {
-    for (const Influence& influence : influences_)
-      if (influence.scope == scope) to[influence.quantity] = influence.drawn_u * random->Normal();
+    for (Influence& influence : influences_) {
+      if (influence.scope != scope) continue;
+      const double rho = influence.neighbour;
+      influence.normal = rho * influence.normal + std::sqrt(1 - rho * rho) * random->Normal();
+      to[influence.quantity] = influence.drawn_u * influence.normal;
+    }
   };
   const size_t quantities = problem_.quantities.size();
   std::vector<double> drawn(quantities);
   draw(Scope::kSystem, drawn.data());
   for (const auto& target : rows_) {
     draw(Scope::kTarget, drawn.data());
+    for (Influence& influence : influences_)
+      if (influence.neighbour > 0) influence.normal = random->Normal();  // of the view before the first
     for (const std::shared_ptr<DrawnRows>& rows : target) {
       draw(Scope::kView, drawn.data());
       rows->shift = drawn;

@@ -48,6 +48,8 @@ class DrawnProblem {
     double u;      // as declared or estimated
     int variance;  // which of variance_dof_; -1: known
     double drawn_u;
+    double neighbour;   // correlation with the view before
+    double normal = 0;  // of that view
   };
   struct Prior {
     Block* block;  // of problem_

@@ -1,5 +1,6 @@
 #include "tests/coverage/rows.h"
 #include <fmt/format.h>
+#include <string>
 #include "io/units.h"
 
 namespace scancal::coverage {
@@ -53,6 +54,63 @@ class Scenes {
     return row;
   }
 
+  // Estimated, as sweeps there and back tell it.
+  Row DriftBothWays() const {
+    Row row{"drift 0.2 mm over sweeps there and back", base_};
+    row.scene.back = true;
+    row.scene.drift_sweep = 0.2;
+    return row;
+  }
+
+  Row Declared(const std::string& name, const std::vector<turntable::Model::Index>& quantities, double u) const {
+    Row row{name, base_};
+    row.draw = [=](Random* random, turntable::Scene* scene) {
+      for (const turntable::Model::Index k : quantities) {
+        const double value = u * random->Normal();
+        if (k == turntable::Model::kDriftSweep) scene->drift_sweep = value;
+        else if (k == turntable::Model::kDrift) scene->drift = value;
+        else scene->system[k] = value;
+      }
+    };
+    row.declare = [=](turntable::Model* model) {
+      for (const turntable::Model::Index k : quantities) {
+        model->quantity(k).role = Role::kConsider;
+        model->quantity(k).u = u;
+      }
+    };
+    return row;
+  }
+
+  Row Neighbours(double correlation) const {
+    Row row{fmt::format("profiles err by 20 um, neighbours correlated {:g}", correlation), base_};
+    row.scene.profile_offset = 20 * kMicron;
+    row.scene.profile_correlation = correlation;
+    return row;
+  }
+
+  Row CoarseAngle(double step_deg) const {
+    Row row{fmt::format("angle in steps of {:g} deg", step_deg), base_};
+    row.scene.angle_step = step_deg * kDegree;
+    row.most = 1;
+    return row;
+  }
+
+  Row OnePlate(double microns, bool declared) const {
+    Row row = Form(microns);
+    row.name += declared ? ", one plate" : ", one plate, not declared";
+    row.scene.one_plate = true;
+    row.most = declared ? 0.97 : 1;
+    row.widest = std::numeric_limits<double>::infinity();
+    row.declare = [declared](turntable::Model* model) {
+      for (int k = 0; k < turntable::kFormModes; ++k) {
+        Quantity& mode = model->quantity(turntable::Model::kForm + k);
+        if (declared) mode.scope = Scope::kSystem;
+        else mode.perhaps_shared = true;
+      }
+    };
+    return row;
+  }
+
   Row All() const {
     Row row = Form(5);
     row.name = "jitter 20, form 5, correlation 40, 2 % outliers";
@@ -74,6 +132,7 @@ class Scenes {
 std::vector<Row> Rows(double sweep_deg) {
   const Scenes of(sweep_deg);
   using enum turntable::FormKind;
+  using turntable::Model;
   return {of.White(),
           of.Jitter(5),
           of.Jitter(20),
@@ -86,7 +145,18 @@ std::vector<Row> Rows(double sweep_deg) {
           of.OtherForm(5, kBent),
           of.LineCorrelation(40),
           of.LineCorrelation(130),
-          of.All()};
+          of.All(),
+          of.DriftBothWays(),
+          of.Declared("drift 50 um over each sweep, declared", {Model::kDriftSweep}, 50 * kMicron),
+          of.Declared("lens: linearity_3, lens_z2, lens_yz2 of 10 um, declared",
+                      {Model::kLinearity3, Model::kLensZ2, Model::kLensYZ2}, 10 * kMicron),
+          of.Declared("encoder_scale 1e-4, declared", {Model::kEncoderScale}, 1e-4),
+          of.Neighbours(0.5),
+          of.Neighbours(0.8),
+          of.Neighbours(0.9),
+          of.CoarseAngle(0.2),
+          of.OnePlate(5, true),
+          of.OnePlate(5, false)};
 }
 
 }  // namespace scancal::coverage

@@ -1,5 +1,6 @@
 // The scenes in which a stated interval must hold the truth, and how wide it may be.
 #pragma once
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@ struct Row {
   std::string name;
   turntable::Scene scene;                                   // the truth; every data set has a seed of its own
   double declared_form = 0;                                 // mm rms
+  std::function<void(Random*, turntable::Scene*)> draw{};   // what is another in every data set, besides its noise
+  std::function<void(turntable::Model*)> declare{};         // further influences
   double least = 0.93, most = 0.97;                         // wanted share of data sets that hold M, and N
   double widest = std::numeric_limits<double>::infinity();  // wanted median width against the oracle
 };

@@ -16,7 +16,8 @@ std::vector<RawScan> CleanScans(const std::vector<SimulatedPlacement>& placement
     RawScan& scan = scans.emplace_back();
     scan.name = placement.name;
     for (const SimulatedProfile& from : placement.profiles) {
-      RawProfile profile{static_cast<double>(scan.profiles.size()), from.alpha, {}, {}, {}};
+      const auto number = static_cast<double>(scan.profiles.size());
+      RawProfile profile{number, from.alpha, {}, {}, {}, number};
       for (size_t i = 0; i < from.y.size(); ++i) {
         if (std::isnan(from.y[i])) continue;
         profile.y.push_back(from.y[i]);
@@ -36,6 +37,7 @@ Model Declared(const Row& row) {
     model.quantity(Model::kForm + k).role = Role::kConsider;
     model.quantity(Model::kForm + k).u = row.declared_form;
   }
+  if (row.declare) row.declare(&model);
   return model;
 }
 
@@ -45,6 +47,8 @@ Trial Try(const Row& row, const Oracle& oracle, uint64_t seed) {
   static const double k = CoverageFactor(kCoverage, std::numeric_limits<double>::infinity());
   Scene scene = row.scene;
   scene.seed = seed;
+  Random random(seed, uint64_t{1} << 40);
+  if (row.draw) row.draw(&random, &scene);
   const std::vector<SimulatedPlacement> placements = Simulate(scene);
   Declaration declaration;
   declaration.search = scene.search;

@@ -12,7 +12,7 @@ def content(c: Calibration, previous: Calibration | None, t: Language) -> dict[s
     status = "unreliable" if not c.is_reliable else "with_warnings" if warnings else "ok"
     if status == "unreliable" and not reasons:
         reasons = [t("verdict.unexplained")]
-    return {"status": status, "reasons": reasons, "warnings": warnings, "fit": _fit(c, t)}
+    return {"status": status, "reasons": reasons, "warnings": warnings, "notes": [str(each) for each in c.get("notes") or []], "fit": _fit(c, t)}
 
 
 def _fit(c: Calibration, t: Language) -> str:

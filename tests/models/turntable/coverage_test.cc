@@ -34,6 +34,29 @@ TEST_P(Coverage, StatedIntervalsHoldTheTruth) {
   EXPECT_LE(tally.unreliable, 1.0 / kSets);
 }
 
+// Rows whose oracle is that of independent profiles: only the stated interval is asked.
+class CoverageOfMore : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(CoverageOfMore, StatedIntervalsHoldTheTruth) {
+  const std::vector<Row> rows = Rows();
+  const auto row = std::find_if(rows.begin(), rows.end(), [](const Row& each) { return each.name == GetParam(); });
+  ASSERT_NE(row, rows.end());
+  Row small = *row;
+  small.scene.profiles = 60;
+  small.scene.points = 30;
+  const Tally tally = Count(TryAll(small, 2000, kSets, 2));
+  const boost::math::binomial right(kSets, 0.95);
+  const double least = boost::math::quantile(right, 1e-4) / kSets;
+  for (const int k : {0, 1}) EXPECT_GE(tally.stated[k], least) << k;
+  EXPECT_LE(tally.unreliable, 4.0 / kSets);
+}
+
+INSTANTIATE_TEST_SUITE_P(, CoverageOfMore,
+                         ::testing::Values("drift 0.2 mm over sweeps there and back",
+                                           "lens: linearity_3, lens_z2, lens_yz2 of 10 um, declared",
+                                           "profiles err by 20 um, neighbours correlated 0.8",
+                                           "angle in steps of 0.2 deg", "form 5 um, one plate, not declared"));
+
 INSTANTIATE_TEST_SUITE_P(, Coverage,
                          ::testing::Values("white noise", "jitter 20 arcsec", "line correlation 40 points"));
 

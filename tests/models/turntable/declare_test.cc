@@ -236,10 +236,40 @@ TEST_F(DeclarationTest, EveryInfluenceIsAccepted) {
   const auto declaration = DeclareWith(
       "influences: {noise_y: 0.05, noise_z: 0.01, line_correlation: 40, encoder_jitter: 0.003, encoder_cos1: 0.001, "
       "encoder_sin1: 0.001, encoder_cos2: 0.001, encoder_sin2: 0.001, scale_y: 1e-4, scale_z: 1e-4, shear: 0.01, "
-      "linearity: 0.01, flatness: 0.02, one_plate: yes, temperature: 1, expansion: 2.3e-5}\n");
+      "linearity: 0.01, flatness: 0.02, one_plate: yes, temperature: 1, expansion: 2.3e-5, linearity_3: 0.01, "
+      "lens_z2: 0.01, lens_yz: 0.01, lens_yz2: 0.01, range_offset: 0.1, range_scale: 1e-4, encoder_scale: 1e-5, "
+      "backlash: 0.01, latency: 0.001, runout: 0.002, wobble: 0.001, drift_sweep: 0.05, drift: 0.1, warm_up: 0.1, "
+      "drift_temperature: 0.05}\n");
   ASSERT_TRUE(declaration.ok()) << declaration.error().message;
   EXPECT_THAT(declaration->warnings, IsEmpty());
+  EXPECT_THAT(declaration->notes, IsEmpty());
   EXPECT_EQ(declaration->line_correlation, 40);
+  for (int k = 0; k < Model::kRunOuts; ++k) {
+    EXPECT_EQ(model_.quantity(Model::kRunOut + k).role, Role::kConsider);
+    EXPECT_NEAR(model_.quantity(Model::kRunOut + k).u, 0.002, 1e-15);
+    EXPECT_NEAR(model_.quantity(Model::kWobble + k).u, 0.001 * kDegree, 1e-15);
+  }
+  EXPECT_EQ(Of(Model::kForm).scope, Scope::kSystem);
+  EXPECT_NEAR(Of(Model::kForm).u, 0.02 / 3.354, 1e-12);  // a bow
+}
+
+TEST_F(DeclarationTest, WhetherItIsOnePlateIsAskedFor) {
+  const auto declaration = DeclareWith("influences: {flatness: 0.02}\n");
+  ASSERT_EQ(declaration->notes.size(), 1U);
+  EXPECT_THAT(declaration->notes[0].english, HasSubstr("Declare one_plate: yes or no"));
+  EXPECT_TRUE(Of(Model::kForm).perhaps_shared);
+  EXPECT_EQ(Of(Model::kForm).scope, Scope::kTarget);
+}
+
+TEST_F(DeclarationTest, ADriftThatIsHeldIsNotEstimated) {
+  EXPECT_TRUE(DeclareWith("influences: {drift_sweep: hold}\n")->drift_held);
+  EXPECT_FALSE(DeclareWith("")->drift_held);
+}
+
+TEST_F(DeclarationTest, WhatSweepsTellNeedsNoPrior) {
+  EXPECT_TRUE(DeclareWith("influences: {drift_sweep: estimate, encoder_scale: estimate, lens_yz2: estimate}\n").ok());
+  EXPECT_THAT(ErrorWith("influences: {range_scale: estimate}\n"), HasSubstr("not determined by planes"));
+  EXPECT_THAT(ErrorWith("influences: {runout: estimate}\n"), HasSubstr("not determined by planes"));
 }
 
 TEST_F(DeclarationTest, InfluencesThatCannotBe) {

@@ -34,7 +34,8 @@ class JacobianTest : public ::testing::TestWithParam<Kind> {
     profile_.along_range = kind.along_range;
     for (int i = 0; i < 3; ++i) profile_.points.push_back({1 + random_.Uniform(), Within(50), Within(80)});
     if (kind.with_influences) {
-      profile_.bend = Numbers(3, 1);
+      profile_.bend = Numbers(3, std::ssize(Model::kBends));
+      profile_.motion = {-1, 0.7, {0.3, -0.6, 0.8, 0.4}};
       profile_.line = Numbers(3, 2);
       profile_.form = Numbers(3, kFormModes);
       for (double& point : points_) point = Within(0.1);

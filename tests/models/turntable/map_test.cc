@@ -11,6 +11,7 @@ namespace {
 struct Draw {
   std::vector<double> q;  // by Model::Index; of the system and the target random, else 0
   double alpha = 0, y = 0, z = 0, bend = 0;
+  Model::Motion motion;
 };
 
 Draw Drawn(uint64_t seed) {
@@ -25,17 +26,19 @@ Draw Drawn(uint64_t seed) {
   draw.y = 80 * random.Normal();
   draw.z = 60 * random.Normal();
   draw.bend = std::pow(random.Normal(), 2);
+  for (int k = Model::kBacklash; k < Model::kLineOffset; ++k) draw.q[k] = 0.05 * random.Normal();
+  draw.motion = {random.Uniform() < 0.5 ? -1.0 : 1.0, random.Normal(), {}};
   return draw;
 }
 
 Seen<double> SeenOf(const Draw& draw) { return {draw.q.data(), nullptr, static_cast<int>(draw.q.size())}; }
 
 Eigen::Vector3d PointOf(const Draw& draw, double y) {
-  return ProfileInTable<double>(draw.alpha, draw.q.data()).Point(y, draw.z, draw.bend);
+  return ProfileInTable<double>(draw.alpha, draw.q.data(), draw.motion).Point(y, draw.z, draw.bend);
 }
 
 System SystemIn(const Draw& draw) {
-  System system{{}, {20, 140}};
+  System system{{}, {20, 140}, {-50, 60}};
   std::copy_n(draw.q.begin(), system.q.size(), system.q.begin());
   return system;
 }
@@ -57,14 +60,22 @@ TEST(ProfileInTable, IsWhatItsCommentSays) {
     const auto q = [&](Model::Index k) { return draw.q[k]; };
     const double a = draw.alpha - q(Model::kEncoderCos1) * std::cos(draw.alpha) -
                      q(Model::kEncoderSin1) * std::sin(draw.alpha) - q(Model::kEncoderCos2) * std::cos(2 * draw.alpha) -
-                     q(Model::kEncoderSin2) * std::sin(2 * draw.alpha) - q(Model::kEncoderJitter);
-    const double y = (1 + q(Model::kScaleY)) * draw.y + q(Model::kShear) * draw.z + q(Model::kLinearity) * draw.bend,
-                 z = (1 + q(Model::kScaleZ)) * draw.z;
-    const Vector3d offset = (1 + q(Model::kExpansion)) * Vector3d(-q(Model::kM), q(Model::kN), 0);
-    const Vector3d expected = AngleAxisd(-a, Vector3d::UnitZ()) * AngleAxisd(M_PI, Vector3d::UnitZ()) *
-                              Vector3d(AngleAxisd(q(Model::kTiltY), Vector3d::UnitY()) *
-                                           (AngleAxisd(q(Model::kTiltX), Vector3d::UnitX()) * Vector3d(0, y, z)) +
-                                       offset);
+                     q(Model::kEncoderSin2) * std::sin(2 * draw.alpha) - q(Model::kEncoderScale) * draw.alpha -
+                     q(Model::kEncoderJitter) - q(Model::kBacklash) * draw.motion.direction / 2 -
+                     q(Model::kLatency) * draw.motion.speed;
+    const auto with = [&](Model::Index k, int first) {
+      return q(k) + draw.q[first] * std::cos(draw.alpha) + draw.q[first + 1] * std::sin(draw.alpha) +
+             draw.q[first + 2] * std::cos(2 * draw.alpha) + draw.q[first + 3] * std::sin(2 * draw.alpha);
+    };
+    const double M = with(Model::kM, Model::kRunOut), N = with(Model::kN, Model::kRunOut + 4),
+                 tilt_x = with(Model::kTiltX, Model::kWobble), tilt_y = with(Model::kTiltY, Model::kWobble + 4);
+    const double y = (1 + q(Model::kScaleY) + q(Model::kRangeScale)) * draw.y + q(Model::kShear) * draw.z + draw.bend,
+                 z = (1 + q(Model::kScaleZ) + q(Model::kRangeScale)) * draw.z;
+    const Vector3d offset = (1 + q(Model::kExpansion)) * Vector3d(-M, N, 0);
+    const Vector3d expected =
+        AngleAxisd(-a, Vector3d::UnitZ()) * AngleAxisd(M_PI, Vector3d::UnitZ()) *
+        Vector3d(AngleAxisd(tilt_y, Vector3d::UnitY()) * (AngleAxisd(tilt_x, Vector3d::UnitX()) * Vector3d(0, y, z)) +
+                 offset);
     EXPECT_LT((PointOf(draw, draw.y) - expected).norm(), 1e-11) << seed;
   }
 }
@@ -77,7 +88,9 @@ TEST(ProfileInTable, LiesAtTheDistanceFromThePlaneThatTheResidualSays) {
     Model::View view;
     view.alpha = draw.alpha;
     view.points = {{1, draw.y, draw.z}};
-    view.bend = Eigen::VectorXd::Constant(1, draw.bend);
+    view.motion = draw.motion;
+    view.bend = Eigen::RowVectorXd::Zero(std::ssize(Model::kBends));
+    view.bend(0, 0) = draw.bend / draw.q[Model::kLinearity];
     const auto [normal, distance] = Model::Plane(plane, Eigen::Map<const Eigen::Vector3d>(&draw.q[Model::kNormal1]));
     const double expected = normal.dot(PointOf(draw, draw.y)) - distance;
     double r = 0;
@@ -90,11 +103,19 @@ TEST(ProfileInTable, LiesAtTheDistanceFromThePlaneThatTheResidualSays) {
 }
 
 TEST(System, BendsFromOneEndOfTheDepthsToTheOther) {
-  const System system{{}, {20, 140}};
-  EXPECT_EQ(system.Bend(20), 1);
-  EXPECT_EQ(system.Bend(80), 0);
-  EXPECT_EQ(system.Bend(140), 1);
-  EXPECT_EQ(system.Bend(110), 0.25);
+  System system{{}, {20, 140}, {-60, 60}};
+  EXPECT_EQ(system.Bend(20, 30), 0);
+  system[Model::kLinearity] = 1;
+  EXPECT_EQ(system.Bend(20, 30), 1);
+  EXPECT_EQ(system.Bend(80, 30), 0);
+  EXPECT_EQ(system.Bend(140, 30), 1);
+  EXPECT_EQ(system.Bend(110, 30), 0.25);
+  for (size_t k = 0; k < Model::kBends.size(); ++k) {
+    System bent{{}, {20, 140}, {-60, 60}};
+    bent[Model::kBends[k]] = 2;
+    constexpr std::array kShapes = {0.25, 0.125, 0.25, 0.25, 0.125};
+    EXPECT_EQ(bent.Bend(110, 30), 2 * kShapes[k]) << k;
+  }
 }
 
 TEST(System, DifferentiatesByEachOfItsQuantities) {
@@ -135,6 +156,7 @@ TEST(SystemOf, ACalibrationIsWhatItFound) {
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_EQ(found->q, system.q);
   EXPECT_EQ(found->depths, system.depths);
+  EXPECT_EQ(found->heights, system.heights);
 }
 
 TEST(SystemOf, RefusesWhatIsNoTurntable) {

@@ -197,5 +197,51 @@ TEST(Simulate, OneProfileOfOnePointMayHaveForm) {
   }
 }
 
+TEST(Simulate, SweepsBackDriftsAndRoundsAngles) {
+  Scene scene = ExactScene();
+  scene.profiles = 21;
+  const auto plain = Simulate(scene);
+  scene.back = true;
+  const auto back = Simulate(scene);
+  EXPECT_EQ(back[0].profiles[0].alpha, plain[0].profiles[0].alpha);
+  EXPECT_NEAR(back[0].profiles[10].alpha, scene.sweep / 2, 1e-15);
+  EXPECT_NEAR(back[0].profiles[20].alpha, -scene.sweep / 2, 1e-15);
+  EXPECT_NEAR(back[0].profiles[20].y[0], back[0].profiles[0].y[0], 1e-9);
+  scene.drift_sweep = 0.2;
+  scene.drift = 0.3;
+  scene.angle_step = 0.5 * kDegree;
+  const auto drifted = Simulate(scene);
+  for (size_t t = 0; t < drifted.size(); ++t) {
+    for (size_t i = 0; i < 21; ++i) {
+      const double elapsed = static_cast<double>(i) / 20;
+      EXPECT_NEAR(drifted[t].profiles[i].y[0] - back[t].profiles[i].y[0],
+                  0.2 * elapsed + 0.3 * (static_cast<double>(t) + elapsed) / static_cast<double>(drifted.size()), 1e-9);
+      const double steps = drifted[t].profiles[i].alpha / scene.angle_step;
+      EXPECT_NEAR(steps, std::round(steps), 1e-9);
+      EXPECT_LE(std::abs(drifted[t].profiles[i].alpha - back[t].profiles[i].alpha), scene.angle_step / 2 + 1e-12);
+    }
+  }
+}
+
+TEST(Simulate, ProfilesErrTogetherWithTheirNeighbours) {
+  Scene scene = ExactScene();
+  scene.profiles = 2000;
+  scene.points = 1;
+  scene.placements = 1;
+  const auto plain = Simulate(scene);
+  scene.profile_offset = 0.02;
+  scene.profile_correlation = 0.8;
+  const auto with = Simulate(scene);
+  double squares = 0, products = 0, before = 0;
+  for (size_t i = 0; i < 2000; ++i) {
+    const double error = with[0].profiles[i].y[0] - plain[0].profiles[i].y[0];
+    squares += error * error;
+    products += error * before;
+    before = error;
+  }
+  EXPECT_NEAR(std::sqrt(squares / 2000), 0.02, 0.003);
+  EXPECT_NEAR(products / squares, 0.8, 0.06);
+}
+
 }  // namespace
 }  // namespace scancal::turntable

@@ -1,0 +1,275 @@
+#include "solver/uncertainty/neighbours.h"
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include "solver/dense.h"
+#include "solver/weigh.h"
+
+namespace scancal {
+namespace {
+
+constexpr int kMostRows = 12;
+constexpr double kFewestStretches = 10;
+constexpr double kSignificant = 16, kLeastCorrelation = 0.1;
+constexpr int kMostEvaluations = 160;
+constexpr double kSettled = 1e-4;  // of -2 l
+
+using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRows, kMostRows>;
+
+struct View {
+  Eigen::MatrixXd columns;  // own, system, r; divided by the noise of points
+  Small effects;            // of the ordered quantities, the same
+};
+
+struct Ordered {  // one target
+  std::vector<View> views;
+  Eigen::MatrixXd priors;  // rows as columns of a view; of its own quantities
+};
+
+// -2 l of the variances and the correlation.
+class Likelihood {
+ public:
+  Likelihood(const Problem& problem, const Estimate& at) {
+    const std::vector<int> own = problem.With({Scope::kTarget}, Role::kEstimate),
+                           system = problem.With({Scope::kSystem}, Role::kEstimate),
+                           points = problem.With({Scope::kPoint}, Role::kConsider);
+    for (const int k : problem.With({Scope::kView}, Role::kConsider)) quantities_.push_back(k);
+    own_ = std::ssize(own);
+    system_ = std::ssize(system);
+    std::vector<int> seeds = own;
+    seeds.insert(seeds.end(), system.begin(), system.end());
+    for (size_t t = 0; t < problem.targets.size(); ++t) {
+      const std::vector<double> values = Values(problem, at, t);
+      Ordered& target = targets_.emplace_back();
+      target.priors.resize(0, own_ + system_ + 1);
+      for (const Block& block : problem.targets[t].views) {
+        Eigen::VectorXd r;
+        Eigen::MatrixXd jacobian;
+        if (!block.prior.empty()) {
+          block.Evaluate(values.data(), seeds, &r, &jacobian);
+          target.priors.conservativeResize(target.priors.rows() + r.size(), Eigen::NoChange);
+          target.priors.bottomRows(r.size()) << jacobian, r;
+          continue;
+        }
+        if (block.rows->size() > kMostRows || std::ssize(quantities_) > kMostRows) {
+          sound_ = false;
+          return;
+        }
+        Block{block.rows, 1, {}, {}, {}}.Evaluate(values.data(), seeds, &r, &jacobian);
+        const Eigen::MatrixXd by_point = RawDerivatives(block, values, points);
+        Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(r.size(), r.size());
+        for (Eigen::Index k = 0; k < by_point.cols(); ++k) {
+          const Eigen::MatrixXd b =
+              Instances(by_point.col(k) * problem.quantities[points[k]].u, block.rows->points(), Scope::kPoint);
+          covariance += b * b.transpose();
+        }
+        const Eigen::MatrixXd whitening = Whitening(covariance);
+        View& view = target.views.emplace_back();
+        view.columns.resize(r.size(), jacobian.cols() + 1);
+        view.columns << whitening * jacobian, whitening * r;
+        view.effects = whitening * RawDerivatives(block, values, quantities_);
+      }
+    }
+    system_priors_.resize(0, system_ + 1);
+    for (const Block& prior : problem.priors) {
+      Eigen::VectorXd r;
+      Eigen::MatrixXd jacobian;
+      prior.Evaluate(Values(problem, at, 0).data(), system, &r, &jacobian);
+      system_priors_.conservativeResize(system_priors_.rows() + r.size(), Eigen::NoChange);
+      system_priors_.bottomRows(r.size()) << jacobian, r;
+    }
+  }
+
+  bool sound() const { return sound_ && !quantities_.empty(); }
+  const std::vector<int>& quantities() const { return quantities_; }
+  double views() const {
+    double sum = 0;
+    for (const Ordered& target : targets_) sum += static_cast<double>(target.views.size());
+    return sum;
+  }
+
+  double At(const Eigen::VectorXd& u, double rho) const {
+    const Eigen::VectorXd variance = u.cwiseAbs2();
+    double logs = 0;
+    TriangularFactor whole(static_cast<int>(system_) + 1);
+    whole.Add(system_priors_);
+    for (const Ordered& target : targets_) {
+      const Eigen::MatrixXd rows = Filtered(target, variance, rho, &logs);
+      const Eigen::MatrixXd r = UpperTriangle(rows);
+      for (Eigen::Index k = 0; k < own_; ++k) logs += 2 * std::log(std::abs(r(k, k)));
+      whole.Add(r.bottomRightCorner(system_ + 1, system_ + 1));
+    }
+    const Eigen::MatrixXd r = whole.R();
+    for (Eigen::Index k = 0; k < system_; ++k) logs += 2 * std::log(std::abs(r(k, k)));
+    return logs + r(system_, system_) * r(system_, system_);
+  }
+
+ private:
+  // The innovations of all columns, divided by their standard deviations.
+  Eigen::MatrixXd Filtered(const Ordered& target, const Eigen::VectorXd& variance, double rho, double* logs) const {
+    const Eigen::Index columns = own_ + system_ + 1, states = variance.size();
+    Eigen::Index rows = target.priors.rows();
+    for (const View& view : target.views) rows += view.columns.rows();
+    Eigen::MatrixXd filtered(std::max(rows, columns), columns);
+    filtered.bottomRows(filtered.rows() - rows).setZero();
+    filtered.topRows(target.priors.rows()) = target.priors;
+    Eigen::Index row = target.priors.rows();
+    Eigen::MatrixXd state = Eigen::MatrixXd::Zero(states, columns), innovation;
+    Small covariance = variance.asDiagonal();
+    bool first = true;
+    for (const View& view : target.views) {
+      if (!first) {
+        state *= rho;
+        covariance *= rho * rho;
+        covariance.diagonal() += (1 - rho * rho) * variance;
+      }
+      first = false;
+      const Eigen::Index n = view.columns.rows();
+      const Small across = covariance * view.effects.transpose();
+      Small spread = view.effects * across;
+      spread.diagonal().array() += 1;
+      const Eigen::LLT<Small> llt(spread);
+      innovation = view.columns - view.effects * state;
+      const Small gain = llt.solve(across.transpose()).transpose();
+      state += gain * innovation;
+      covariance -= gain * across.transpose();
+      for (Eigen::Index k = 0; k < n; ++k) *logs += 2 * std::log(llt.matrixLLT()(k, k));
+      llt.matrixL().solveInPlace(innovation);
+      filtered.middleRows(row, n) = innovation;
+      row += n;
+    }
+    return filtered;
+  }
+
+  std::vector<Ordered> targets_;
+  std::vector<int> quantities_;  // of view scope
+  Eigen::MatrixXd system_priors_;
+  Eigen::Index own_ = 0, system_ = 0;
+  bool sound_ = true;
+};
+
+// Nelder and Mead, Computer Journal 7, 1965: few parameters, and a function whose derivatives nobody needs.
+Eigen::VectorXd Minimum(const std::function<double(const Eigen::VectorXd&)>& f, const Eigen::VectorXd& start,
+                        double step, double* least) {
+  const Eigen::Index n = start.size();
+  std::vector<std::pair<double, Eigen::VectorXd>> simplex = {{f(start), start}};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::VectorXd x = start;
+    x[k] += step;
+    simplex.emplace_back(f(x), x);
+  }
+  const auto lower = [](const auto& a, const auto& b) { return a.first < b.first; };
+  for (int evaluations = static_cast<int>(n) + 1; evaluations < kMostEvaluations;) {
+    std::sort(simplex.begin(), simplex.end(), lower);
+    if (simplex.back().first - simplex.front().first < kSettled) break;
+    Eigen::VectorXd middle = Eigen::VectorXd::Zero(n);
+    for (Eigen::Index k = 0; k < n; ++k) middle += simplex[static_cast<size_t>(k)].second / static_cast<double>(n);
+    const auto at = [&](double by) {
+      const Eigen::VectorXd x = middle + by * (middle - simplex.back().second);
+      ++evaluations;
+      return std::pair{f(x), x};
+    };
+    auto next = at(1);
+    if (next.first < simplex.front().first) next = std::min(next, at(2), lower);
+    else if (next.first >= simplex[static_cast<size_t>(n) - 1].first) next = std::min(next, at(-0.5), lower);
+    if (next.first < simplex.back().first) {
+      simplex.back() = next;
+      continue;
+    }
+    for (size_t k = 1; k < simplex.size(); ++k) {
+      simplex[k].second = (simplex[k].second + simplex[0].second) / 2;
+      simplex[k].first = f(simplex[k].second);
+      ++evaluations;
+    }
+  }
+  const auto best = std::min_element(simplex.begin(), simplex.end(), lower);
+  *least = best->first;
+  return best->second;
+}
+
+}  // namespace
+
+bool EstimateNeighbours(Problem* problem, const Estimate& at, Variances* variances) {
+  for (const Quantity& q : problem->quantities)
+    if (q.scope == Scope::kView && q.role == Role::kConsider && !q.in_order) return false;
+  Problem free = *problem;
+  const std::vector<int> considered = problem->With({Scope::kSystem, Scope::kTarget}, Role::kConsider);
+  for (const int k : considered) free.quantities[k].role = Role::kEstimate;
+  free.AddPriors(considered);
+  // What a target may have for itself, and nobody estimates, is no noise: with a prior as wide as anything it is left
+  // out.
+  constexpr double kAnything = 1;
+  std::vector<int> held;
+  for (const int k : problem->With({Scope::kTarget}, Role::kHold)) {
+    free.quantities[k].role = Role::kEstimate;
+    free.quantities[k].u = kAnything;
+    held.push_back(k);
+  }
+  free.AddPriors(held);
+  Estimate there = NominalStart(free);
+  for (size_t t = 0; t < problem->targets.size(); ++t) SetValues(free, Values(*problem, at, t), t, &there);
+  const Likelihood likelihood(free, there);
+  if (!likelihood.sound()) return false;
+  const std::vector<int>& all = likelihood.quantities();
+  Eigen::VectorXd u(std::ssize(all));
+  std::vector<Eigen::Index> estimated;
+  for (Eigen::Index k = 0; k < u.size(); ++k) {
+    const Quantity& q = problem->quantities[all[static_cast<size_t>(k)]];
+    u[k] = q.u;
+    if (std::find(variances->sources.begin(), variances->sources.end(), q.Source()) != variances->sources.end())
+      estimated.push_back(k);
+  }
+  // In logarithms, from what independent views gave; what those had at zero begins small.
+  const auto unpack = [&](const Eigen::VectorXd& x) {
+    Eigen::VectorXd all_u = u;
+    for (size_t k = 0; k < estimated.size(); ++k) all_u[estimated[k]] = std::exp(x[static_cast<Eigen::Index>(k)]);
+    return all_u;
+  };
+  Eigen::VectorXd start(std::ssize(estimated) + 1);
+  for (size_t k = 0; k < estimated.size(); ++k)
+    start[static_cast<Eigen::Index>(k)] = std::log(std::max(u[estimated[k]], 1e-9));
+  start[start.size() - 1] = std::atanh(0.5);
+  const auto f = [&](const Eigen::VectorXd& x) {
+    const double value = likelihood.At(unpack(x), std::tanh(x[x.size() - 1]));
+    return std::isfinite(value) ? value : std::numeric_limits<double>::max();
+  };
+  const double independent = likelihood.At(u, 0);
+  if (independent - likelihood.At(u, 0.1) < 0) return false;  // the likelihood falls: nothing to be found
+  double least = 0;
+  const Eigen::VectorXd best = Minimum(f, start, 0.7, &least);
+  const double rho = std::tanh(best[best.size() - 1]);
+  if (!(independent - least > kSignificant) || rho < kLeastCorrelation) return false;
+  if (likelihood.views() * (1 - rho) < kFewestStretches * (1 + rho)) return false;
+  const Eigen::VectorXd found = unpack(best);
+  const double fewer = (3 + rho * rho) / (1 - rho * rho);
+  for (Eigen::Index k = 0; k < u.size(); ++k) {
+    Quantity& q = problem->quantities[all[static_cast<size_t>(k)]];
+    q.u = found[k];
+    q.neighbour = rho;
+    for (size_t s = 0; s < variances->sources.size(); ++s) {
+      if (variances->sources[s] != q.Source()) continue;
+      const auto i = static_cast<Eigen::Index>(s);
+      // As precise, relatively, as it was, or as so many views tell a variance.
+      const double before = variances->variance[i],
+                   relative = before > 0 ? variances->covariance(i, i) / (before * before) : 0;
+      variances->variance[i] = q.u * q.u;
+      variances->covariance.row(i).setZero();
+      variances->covariance.col(i).setZero();
+      variances->covariance(i, i) =
+          std::pow(q.u, 4) * fewer * std::min(std::max(relative, 2 / likelihood.views()), 8 / likelihood.views());
+    }
+  }
+  Weigh(problem, at);
+  return true;
+}
+
+double ScatterOfNeighbours(const Problem& problem, double correlation) {
+  for (const Quantity& q : problem.quantities)
+    if (q.neighbour > 0) return 1 + 2 * std::max(0.0, correlation) / (1 - q.neighbour);
+  return 1;
+}
+
+}  // namespace scancal

@@ -1,0 +1,31 @@
+// Views in an order, of which neighbours err alike.
+#pragma once
+#include "solver/linearize.h"
+#include "solver/uncertainty/variances.h"
+
+namespace scancal {
+
+// The quantities of view scope that are in_order as first-order autoregressive processes along the views of a target:
+// x_v = rho x_v-1 + w_v, of standard deviation u each, and one rho for all. rho and the u that were estimated come from
+// the restricted likelihood
+//
+//     -2 l = sum log|S_v| + log|J'V^-1 J| + r'P r,
+//
+// whose V is whitened view by view by a Kalman filter (Harvey, Forecasting, Structural Time Series Models and the
+// Kalman Filter, 1989, 3.4): linear in the views. What is considered enters as estimated with its u as prior,
+// and what is held of target scope as estimated: smooth errors that the model leaves out are for TestMisfits to name,
+// not to pass as noise.
+//
+// Where the likelihood ratio against rho = 0 is above 16 (p = 6e-5) and rho above 0.1, sets u and `neighbour` of these
+// quantities, weighs the problem with them, and returns true. Weights stay those of independent views: for regressors
+// as smooth as these they lose nothing (Grenander and Rosenblatt, Statistical Analysis of Stationary Time Series, 1957,
+// ch. 7); u is K V K' with the V that was found. The degrees of freedom of the variances, and with them k, allow for
+// the fewer independent views and for rho itself. False, and nothing changed, where views have more than 12 rows, or
+// where so few independent stretches are left (below 10 in all) that it is no noise any more.
+bool EstimateNeighbours(Problem* problem, const Estimate& at, Variances* variances);
+
+// By how much the sum of whitened residuals along a smooth column scatters more than if views were independent:
+// 1 + 2 c / (1 - rho) with c the correlation of neighbours that is left by the weights. 1: they are.
+double ScatterOfNeighbours(const Problem& problem, double correlation);
+
+}  // namespace scancal
