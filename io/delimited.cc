@@ -32,27 +32,6 @@ const char* SkipBlanks(const char* at) {
   return at;
 }
 
-// A cell that is no plain number; nullptr if it is no number at all.
-const char* ReadCellCarefully(const char* at, Cells cells, double* number) {
-  const char* const end = SkipCell(SkipBlanks(at));
-  const ParsedNumber parsed = ParseNumber({at, end});
-  *number = parsed.kind == NumberKind::kMissing ? kNothing : parsed.value;
-  const bool right =
-      parsed.kind == NumberKind::kNumber || (parsed.kind == NumberKind::kMissing && cells == Cells::kNumberOrNothing);
-  return right ? end : nullptr;
-}
-
-// `end`: of the block of lines.
-inline const char* ReadCell(const char* at, const char* end, Cells cells, ColumnParser& parser, double* number) {
-  const char* start = at;
-  while (*start == ' ') ++start;
-  if (const char* number_end = parser.Parse(start, end, number)) {
-    if (*number_end == '\r') ++number_end;
-    if (*number_end == ',' || *number_end == '\n') return number_end;
-  }
-  return ReadCellCarefully(at, cells, number);
-}
-
 std::string CellText(std::string_view cell) {
   const std::string_view quoted = WithoutBlanks(cell);
   if (quoted.size() < 2 || quoted.front() != '"' || quoted.back() != '"') return std::string(quoted);
@@ -61,15 +40,22 @@ std::string CellText(std::string_view cell) {
   return text;
 }
 
+// From a comma behind the last cell: to the end of the line if nothing but such commas follows.
+const char* SkipEmptyCells(const char* at) {
+  const char* end = at;
+  while (*end == ',' || *end == ' ' || *end == '\r') ++end;
+  return *end == '\n' ? end : at;
+}
+
 // Blank, or a comment.
 bool IsWithoutCells(std::string_view line) {
   const std::string_view text = WithoutBlanks(line);
-  return text.empty() || text.front() == '#';
+  return text.empty() || (text.front() == '#' && !text.starts_with("#N/A"));
 }
 
 }  // namespace
 
-TextLines::TextLines(InputFile file)
+TextLines::TextLines(DecodedFile file)
     : file_(std::move(file)),
       buffer_(kBlock + 1),
       begin_(buffer_.data()),
@@ -77,7 +63,7 @@ TextLines::TextLines(InputFile file)
       filled_end_(buffer_.data()) {}
 
 Result<TextLines> TextLines::Open(const std::filesystem::path& path) {
-  SCANCAL_ASSIGN_OR_RETURN(InputFile file, InputFile::Open(path));
+  SCANCAL_ASSIGN_OR_RETURN(DecodedFile file, DecodedFile::Open(path));
   TextLines lines(std::move(file));
   SCANCAL_RETURN_IF_ERROR(lines.ReadMore());
   SCANCAL_RETURN_IF_ERROR(lines.CheckEncoding());
@@ -86,9 +72,6 @@ Result<TextLines> TextLines::Open(const std::filesystem::path& path) {
 
 Result<void> TextLines::CheckEncoding() {
   const std::string_view text(begin_, static_cast<size_t>(filled_end_ - begin_));
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    return Error{name() + ": found UTF-16 text, expected UTF-8; save the file as UTF-8 or plain text"};
-  }
   if (text.substr(0, 4096).find('\0') != std::string_view::npos) {
     return Error{name() + ": found binary data, expected text with commas"};
   }
@@ -110,7 +93,6 @@ Result<void> TextLines::ReadMore() {
     }
     const size_t room = buffer_.size() - 1 - filled;  // the last byte is kept for a line end that is missing
     SCANCAL_ASSIGN_OR_RETURN(const size_t count, file_.Read(buffer_.data() + filled, room));
-    bytes_read_ += static_cast<int64_t>(count);
     filled += count;
     at_end_ = count < room;
     if (at_end_ && filled > 0 && buffer_[filled - 1] != '\n') buffer_[filled++] = '\n';
@@ -120,7 +102,14 @@ Result<void> TextLines::ReadMore() {
   begin_ = buffer_.data();
   end_ = begin_ + whole;
   filled_end_ = begin_ + filled;
+  if (!dialect_.is_plain()) dialect_.Translate(buffer_.data(), buffer_.data() + whole);
   return {};
+}
+
+void TextLines::Translate(const Dialect& dialect) {
+  dialect_ = dialect;
+  char* const first = buffer_.data() + (begin_ - buffer_.data());
+  if (!dialect_.is_plain()) dialect_.Translate(first, first + (end_ - begin_));
 }
 
 Result<bool> TextLines::Fill() {
@@ -137,21 +126,89 @@ Result<std::optional<std::string_view>> TextLines::TakeLine() {
   return std::optional(line);
 }
 
-std::vector<std::string> SplitCells(std::string_view line) {
-  const std::string ended = std::string(line) + '\n';
-  const char* const line_end = ended.c_str() + line.size();
-  std::vector<std::string> cells;
-  for (const char* at = ended.c_str();; ++at) {
-    const char* const start = SkipBlanks(at);
-    at = SkipCell(start);
-    cells.push_back(CellText({start, at}));
-    if (at == line_end) return cells;
-  }
-}
-
 Result<DelimitedText> DelimitedText::Open(const std::filesystem::path& path) {
   SCANCAL_ASSIGN_OR_RETURN(TextLines text, TextLines::Open(path));
   return DelimitedText(std::move(text));
+}
+
+// The lines that are in memory, enough of them to tell how the file is written.
+std::vector<std::string_view> DelimitedText::FirstLines() const {
+  constexpr size_t kMost = 1500;
+  std::vector<std::string_view> lines;
+  for (const char* at = text_.begin(); at != text_.end() && lines.size() < kMost;) {
+    const auto* const end = static_cast<const char*>(std::memchr(at, '\n', static_cast<size_t>(text_.end() - at)));
+    lines.emplace_back(at, end - at);
+    at = end + 1;
+  }
+  return lines;
+}
+
+Result<TextHead> DelimitedText::TakeHead(const TextFormat& declared, const ColumnMatcher& match,
+                                         const std::optional<NumberRows>& nameless) {
+  const std::vector<std::string_view> lines = FirstLines();
+  TextHead head;
+  if (match) {
+    SCANCAL_ASSIGN_OR_RETURN(head, FindHead(lines, declared, match, name()));
+  }
+  if (!head.is_known && nameless) {
+    SCANCAL_ASSIGN_OR_RETURN(TextHead numbers, FindNumbers(lines, declared, *nameless, name()));
+    // Names that are not the wanted ones: their columns may be others, too.
+    const auto is_text = [](const std::string& name) { return ParseNumber(name).kind == NumberKind::kText; };
+    const bool named = nameless->exactly && numbers.names.size() == nameless->cells &&
+                       std::all_of(numbers.names.begin(), numbers.names.end(), is_text);
+    if (named) numbers = TextHead{.dialect = numbers.dialect};
+    if (numbers.is_known || !match) head = std::move(numbers);
+    head.is_nameless = head.is_known;
+  }
+  TakeLines(head);
+  return head;
+}
+
+void DelimitedText::TakeLines(const TextHead& head) {
+  const std::vector<std::string_view> lines = FirstLines();
+  head_ = head;
+  const auto translated = [&](size_t line) {
+    std::string text(lines[line - 1]);
+    if (!head.dialect.is_plain()) head.dialect.Translate(text.data(), text.data() + text.size());
+    return text;
+  };
+  if (head.is_known && head.names_line > 0 && !head.is_nameless) names_ = translated(head.names_line);
+  if (!head.units.empty()) units_ = translated(head.lines);
+  const size_t taken = std::min(head.lines, lines.size());
+  if (taken > 0) text_.SkipTo(lines[taken - 1].data() + lines[taken - 1].size() + 1);
+  line_ = static_cast<int64_t>(taken);
+  line_start_ = lines.empty() ? nullptr : lines[std::max<size_t>(taken, 1) - 1].data();
+  text_.Translate(head.dialect);
+}
+
+std::string DelimitedText::Describe() const {
+  std::string text = text_.wrapping();
+  const auto add = [&](const std::string& more) { text += (text.empty() || more.empty() ? "" : ", ") + more; };
+  add(head_.dialect.Describe());
+  if (head_.dialect.windows_1252) add("Windows-1252");
+  if (head_.names_line > 1 && head_.is_known && !head_.is_nameless)
+    add("names in line " + std::to_string(head_.names_line));
+  if (!head_.units.empty()) add("units in line " + std::to_string(head_.lines));
+  if (head_.is_nameless && head_.lines > 0) add("numbers from line " + std::to_string(head_.lines + 1) + " on");
+  return text;
+}
+
+// The row in hand is not one that KeepWhere keeps.
+bool DelimitedText::IsUnwanted() const {
+  if (where_.empty()) return false;
+  const std::vector<std::string> cells = SplitCells(Line());
+  return std::any_of(where_.begin(), where_.end(), [&](const auto& each) {
+    if (each.first >= cells.size()) return true;
+    const std::string& cell = cells[each.first];
+    const ParsedNumber found = ParseNumber(cell), wanted = ParseNumber(each.second);
+    const bool numbers = found.kind == NumberKind::kNumber && wanted.kind == NumberKind::kNumber;
+    return numbers ? found.value != wanted.value : head_.dialect.Original(cell) != each.second;
+  });
+}
+
+bool DelimitedText::IsHeadAgain() const {
+  const std::string_view line = WithoutBlanks(Line());
+  return !line.empty() && (line == WithoutBlanks(names_) || line == WithoutBlanks(units_));
 }
 
 void DelimitedText::Expect(std::vector<ExpectedCells> columns, std::vector<std::string> header, CellCount count) {
@@ -193,23 +250,69 @@ DelimitedText::Column* DelimitedText::AddColumn() {
   return last;
 }
 
-Result<bool> DelimitedText::Next() {
-  const char* at = text_.begin();
-  // At a glance: nearly every row.
-  if (at == text_.end() || *at <= ' ' || *at == '#' || line_ + 1 < first_line_ || line_ >= last_line_) {
-    SCANCAL_ASSIGN_OR_RETURN(const std::string_view row, Peek());
-    if (row.empty()) return false;
-    at = row.data();
+// A cell that is no plain number; nullptr if it is no number at all.
+const char* DelimitedText::ReadCellCarefully(const char* at, Cells cells, double* number) const {
+  const char* const end = SkipCell(SkipBlanks(at));
+  const std::string_view cell(at, static_cast<size_t>(end - at));
+  ParsedNumber parsed = ParseNumber(cell);
+  if (parsed.kind == NumberKind::kText) {
+    const auto is_it = [text = head_.dialect.Original(CellText(cell))](const std::string& missing) {
+      return text == missing;
+    };
+    if (std::any_of(missing_.begin(), missing_.end(), is_it)) parsed.kind = NumberKind::kMissing;
+    else if (const auto unquoted = head_.dialect.Unquoted(cell)) parsed = ParseNumber(*unquoted);
   }
-  line_start_ = at;
-  ++line_;
+  *number = parsed.kind == NumberKind::kMissing ? kNothing : parsed.value;
+  const bool right =
+      parsed.kind == NumberKind::kNumber || (parsed.kind == NumberKind::kMissing && cells == Cells::kNumberOrNothing);
+  return right ? end : nullptr;
+}
+
+// `end`: of the block of lines.
+inline const char* DelimitedText::ReadCell(const char* at, const char* end, Cells cells, ColumnParser& parser,
+                                           double* number) const {
+  const char* start = at;
+  while (*start == ' ') ++start;
+  if (const char* number_end = parser.Parse(start, end, number)) {
+    if (*number_end == '\r') ++number_end;
+    if (*number_end == ',' || *number_end == '\n') return number_end;
+  }
+  return ReadCellCarefully(at, cells, number);
+}
+
+Result<bool> DelimitedText::Next() {
+  for (;;) {
+    const char* at = text_.begin();
+    // At a glance: nearly every row.
+    if (at == text_.end() || *at <= ' ' || *at == '#' || line_ + 1 < first_line_ || line_ >= last_line_) {
+      SCANCAL_ASSIGN_OR_RETURN(const std::string_view row, Peek());
+      if (row.empty()) return false;
+      at = row.data();
+    }
+    line_start_ = at;
+    ++line_;
+    if (IsUnwanted()) {
+      text_.SkipTo(Line().end() + 1);
+      continue;
+    }
+    SCANCAL_ASSIGN_OR_RETURN(const char* const row_end, TakeCells(at));
+    if (row_end != nullptr) {
+      text_.SkipTo(row_end + 1);
+      return true;
+    }
+    text_.SkipTo(Line().end() + 1);
+  }
+}
+
+// Of the row that begins there; returns its '\n', or nullptr where the names stand again.
+Result<const char*> DelimitedText::TakeCells(const char* at) {
   const char* const end = text_.end();
   Column* column = columns_.data();
   for (;; ++column, ++at) {
     column->start = at;
     if (column->cells >= Cells::kNumber) {
       at = ReadCell(at, end, column->cells, column->parser, &column->number);
-      if (at == nullptr) return Wrong(column);
+      if (at == nullptr) return WrongUnlessNames(column);
     } else {
       if (column->cells != Cells::kIgnored) at = SkipBlanks(at);
       const char* const start = at;
@@ -219,19 +322,25 @@ Result<bool> DelimitedText::Next() {
       if (may_be_empty && CellText({start, at}).empty()) return Wrong(column);
     }
     if (*at != column->behind) {
-      if (count_ != CellCount::kAny) return Wrong(nullptr);
+      if (*at == ',' && count_ != CellCount::kAny) at = SkipEmptyCells(at);
+      if (*at != column->behind && count_ != CellCount::kAny) return WrongUnlessNames(nullptr);
       if (*at == ',') column = AddColumn();
     }
     if (*at == '\n') break;
   }
-  text_.SkipTo(at + 1);
   cells_ = static_cast<size_t>(column - columns_.data()) + 1;
-  return true;
+  return at;
+}
+
+Result<const char*> DelimitedText::WrongUnlessNames(const Column* column) {
+  if (IsHeadAgain()) return nullptr;
+  return Wrong(column);
 }
 
 std::string DelimitedText::Text(size_t column) const {
   const char* const start = columns_[column].start;
-  return CellText({start, SkipCell(SkipBlanks(start))});
+  const std::string text = CellText({start, SkipCell(SkipBlanks(start))});
+  return head_.dialect.is_plain() && !head_.dialect.windows_1252 ? text : head_.dialect.Original(text);
 }
 
 size_t DelimitedText::Start(size_t column) {
@@ -262,7 +371,8 @@ Error DelimitedText::Wrong(const Column* column) {
     if (is_text) return Error{place + "the cell is empty, expected text"};
     const char* const start = SkipBlanks(column->start);
     const std::string_view cell = WithoutBlanks({start, SkipCell(start)});
-    return Error{place + "found " + Quoted(cell) + Expectation(ParseNumber(cell).kind) + WrongSeparator()};
+    return Error{place + "found " + Quoted(head_.dialect.Original(cell)) + Expectation(ParseNumber(cell).kind) +
+                 WrongSeparator()};
   }
   const std::string message = Place() + ": found " + std::to_string(found) + (found == 1 ? " cell" : " cells") +
                               ", expected " + std::to_string(columns_.size()) + " (" + Listed(header_) + ")";
@@ -271,6 +381,7 @@ Error DelimitedText::Wrong(const Column* column) {
 }
 
 std::string DelimitedText::WrongSeparator() const {
+  if (!head_.dialect.is_plain()) return "; found " + head_.dialect.Describe();
   const std::string_view line = Line();
   const auto has = [line](char c) { return line.find(c) != std::string_view::npos; };
   if (has(';')) return "; the cells are separated by semicolons, expected commas";

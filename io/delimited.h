@@ -8,7 +8,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
-#include "io/input_file.h"
+#include "io/decoded_file.h"
+#include "io/dialect.h"
 #include "io/number.h"
 #include "io/result.h"
 
@@ -28,26 +29,25 @@ class TextLines {
   // The next line, without its end; nothing at the end of the file.
   Result<std::optional<std::string_view>> TakeLine();
   const std::string& name() const { return file_.name(); }
-  int64_t bytes_read() const { return bytes_read_ - (filled_end_ - begin_); }
+  // From here on as commas between cells and decimal points.
+  void Translate(const Dialect& dialect);
+  int64_t bytes_read() const { return file_.bytes_read() - (file_.wrapping().empty() ? filled_end_ - begin_ : 0); }
   int64_t bytes_total() const { return file_.size(); }
+  const std::string& wrapping() const { return file_.wrapping(); }
 
  private:
-  explicit TextLines(InputFile file);
+  explicit TextLines(DecodedFile file);
   Result<void> ReadMore();
   Result<void> CheckEncoding();
 
-  InputFile file_;
+  DecodedFile file_;
+  Dialect dialect_;
   std::vector<char> buffer_;
   const char* begin_;       // lines not yet taken: [begin_, end_)
   const char* end_;         //
   const char* filled_end_;  // an unfinished line: [end_, filled_end_)
-  int64_t bytes_read_ = 0;
   bool at_end_ = false;
 };
-
-// What the cells of a line say: without blanks and quotes around them, and a doubled quote within quotes is one. A cell
-// in quotes may hold commas.
-std::vector<std::string> SplitCells(std::string_view line);
 
 enum class Cells {
   kIgnored,        // anything; a quote behind a blank does not open it (RFC 4180)
@@ -75,12 +75,23 @@ class DelimitedText {
  public:
   static Result<DelimitedText> Open(const std::filesystem::path& path);
 
+  // From the first line on: finds the head of the file (FindHead, else FindNumbers) and takes it.
+  // What follows reads as commas between cells and decimal points, whatever the file has.
+  // match: none where names tell nothing; nameless: what is looked for where no line has the wanted names.
+  Result<TextHead> TakeHead(const TextFormat& declared, const ColumnMatcher& match,
+                            const std::optional<NumberRows>& nameless);
+
   Result<std::string_view> Peek();  // the next row, without its end; empty at the end of the file
   void Skip();                      // takes the row that Peek found
   // From the next row on. header: as the file names its columns, for messages.
   void Expect(std::vector<ExpectedCells> columns, std::vector<std::string> header, CellCount count);
   // Rows before the first and behind the last of these lines of the file, 1-based, are left out.
   void KeepLines(int64_t first, int64_t last);
+  // Texts that stand for a number that is missing; only rows with these values in these columns.
+  void TreatAsMissing(std::vector<std::string> texts) { missing_ = std::move(texts); }
+  void KeepWhere(std::vector<std::pair<size_t, std::string>> where) { where_ = std::move(where); }
+  // "gzip, cells between semicolons, decimal commas, names in line 15"; empty: a plain file.
+  std::string Describe() const;
 
   Result<bool> Next();  // takes a row as expected; false at the end
   // Of the row in hand, as it stands there.
@@ -111,12 +122,24 @@ class DelimitedText {
   std::string_view Line() const;
   Column* AddColumn();
   Error Wrong(const Column* column);
+  std::vector<std::string_view> FirstLines() const;
+  void TakeLines(const TextHead& head);
+  Result<const char*> TakeCells(const char* at);
+  Result<const char*> WrongUnlessNames(const Column* column);
+  bool IsUnwanted() const;
+  bool IsHeadAgain() const;
+  const char* ReadCell(const char* at, const char* end, Cells cells, ColumnParser& parser, double* number) const;
+  const char* ReadCellCarefully(const char* at, Cells cells, double* number) const;
 
   TextLines text_;
   std::vector<Column> columns_;
   std::vector<ExpectedCells> expected_;
   std::vector<std::string> header_;
   CellCount count_ = CellCount::kLast;
+  TextHead head_;
+  std::string names_, units_;  // their lines, translated: a file that was appended to has them again
+  std::vector<std::string> missing_;
+  std::vector<std::pair<size_t, std::string>> where_;
   int64_t line_ = 0, first_line_ = 1, last_line_ = std::numeric_limits<int64_t>::max();
   size_t cells_ = 0;
   const char* line_start_ = nullptr;  // of the line in hand

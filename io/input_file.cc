@@ -10,6 +10,7 @@
 #include <memory>
 #include <utility>
 #include <vector>
+#include "io/decoded_file.h"
 #include "io/message.h"
 
 namespace scancal {
@@ -142,7 +143,7 @@ Result<std::string> ReadText(const fs::path& path, int64_t most) {
 
 Result<std::string> Sha256(const std::filesystem::path& path) {
   constexpr size_t kBlock = size_t{1} << 20;
-  SCANCAL_ASSIGN_OR_RETURN(InputFile file, InputFile::Open(path));
+  SCANCAL_ASSIGN_OR_RETURN(InputFile file, InputFile::Open(ArchiveOf(path)));
   const Context context = Begin();
   bool ok = context != nullptr;
   std::vector<char> buffer(kBlock);

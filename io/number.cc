@@ -24,18 +24,34 @@ std::string_view WithoutQuotes(std::string_view text) {
   return text;
 }
 
+// What spreadsheets, databases and the C libraries of others write where there is no number.
+bool IsMissingText(std::string_view text, std::string_view magnitude) {
+  for (const char* missing : {"#n/a", "n/a", "na", "null", "none", "--"})
+    if (EqualsIgnoringCase(text, missing)) return true;
+  for (const char* nan : {"nan", "nan(ind)", "nan(snan)", "1.#qnan", "1.#snan", "1.#ind", "1.#nan"})
+    if (EqualsIgnoringCase(magnitude, nan)) return true;
+  return false;
+}
+
 }  // namespace
 
 ParsedNumber ParseNumber(std::string_view text) {
   text = WithoutBlanks(WithoutQuotes(WithoutBlanks(text)));
+  constexpr std::string_view kMinus = "\u2212";
+  if (text.starts_with(kMinus)) {
+    const ParsedNumber magnitude = ParseNumber(text.substr(kMinus.size()));
+    const bool number = magnitude.kind == NumberKind::kNumber && text.substr(kMinus.size()).find_first_of("+-") != 0;
+    return {number ? magnitude.kind : NumberKind::kText, -magnitude.value};
+  }
   if (text.empty()) return {NumberKind::kMissing, 0};
   if (text.front() == '+') {  // from_chars knows no plus
     text.remove_prefix(1);
     if (text.starts_with('-')) return {NumberKind::kText, 0};
   }
   const std::string_view magnitude = text.starts_with('-') ? text.substr(1) : text;
-  if (EqualsIgnoringCase(magnitude, "nan")) return {NumberKind::kMissing, 0};
-  if (EqualsIgnoringCase(magnitude, "inf") || EqualsIgnoringCase(magnitude, "infinity")) {
+  if (IsMissingText(text, magnitude)) return {NumberKind::kMissing, 0};
+  if (EqualsIgnoringCase(magnitude, "inf") || EqualsIgnoringCase(magnitude, "infinity") ||
+      EqualsIgnoringCase(magnitude, "1.#inf")) {
     return {NumberKind::kInfinite, 0};
   }
   double value = 0;

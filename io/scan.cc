@@ -1,6 +1,7 @@
 #include "io/scan.h"
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <utility>
 #include "io/message.h"
@@ -40,6 +41,49 @@ std::vector<std::string> Masked(std::vector<std::string> names) {
   return names;
 }
 
+std::string Lower(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
+  return text;
+}
+
+// [mm] or (mm): mm; anything else as it is.
+std::string_view WithoutBrackets(std::string_view text) {
+  text = WithoutBlanks(text);
+  const bool are_there =
+      text.size() >= 2 && ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')'));
+  return are_there ? WithoutBlanks(text.substr(1, text.size() - 2)) : text;
+}
+
+std::optional<char> ReadSign(YamlMap& map, const char* key, const std::map<std::string, char>& signs,
+                             const std::string& expected) {
+  if (!map.Has(key)) return std::nullopt;
+  const auto found = signs.find(map.Text(key));
+  if (found != signs.end()) return found->second;
+  map.Fail(key, "expected " + expected);
+  return std::nullopt;
+}
+
+void ReadTextFormat(YamlMap map, TextFormat* format) {
+  static const std::map<std::string, char> separators = {{",", ','},         {"comma", ','},  {";", ';'},
+                                                         {"semicolon", ';'}, {"tab", '\t'},   {"\t", '\t'},
+                                                         {" ", ' '},         {"spaces", ' '}, {"blanks", ' '}};
+  if (const auto sign = ReadSign(map, "separator", separators, "\",\", \";\", tab or spaces")) format->separator = sign;
+  if (const auto sign = ReadSign(map, "decimal", {{".", '.'}, {",", ','}}, "\".\" or \",\"")) format->decimal = sign;
+  if (map.Has("header_lines")) {
+    const double lines = map.Number("header_lines");
+    if (lines < 0 || lines > 1000 || std::floor(lines) != lines)
+      map.Fail("header_lines", "expected how many lines stand before the first line of data, up to 1000");
+    else format->header_lines = static_cast<int64_t>(lines);
+  }
+  if (map.Has("encoding")) {
+    const std::string encoding = Lower(map.Text("encoding"));
+    format->windows_1252 =
+        encoding == "cp1252" || encoding == "windows-1252" || encoding == "latin-1" || encoding == "iso-8859-1";
+    if (!*format->windows_1252 && encoding != "utf-8" && encoding != "utf-16")
+      map.Fail("encoding", "expected utf-8, utf-16 or cp1252");
+  }
+}
+
 bool IsNpy(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -49,30 +93,48 @@ bool IsNpy(const std::filesystem::path& path) {
 
 }  // namespace
 
-std::optional<double> MatchColumn(const ScanColumn& wanted, std::string_view found, const Units& units) {
+std::optional<double> MatchColumn(const ScanColumn& wanted, std::string_view found, const Units& units,
+                                  std::string_view own_unit) {
+  found = WithoutBlanks(found);
   if (!found.starts_with(wanted.name)) return std::nullopt;
-  const std::string_view suffix = found.substr(wanted.name.size());
-  if (suffix.empty()) return units.Of(wanted.dimension);
-  return suffix.front() == '_' ? UnitSize(suffix.substr(1), wanted.dimension) : std::nullopt;
+  const std::string_view rest = WithoutBlanks(found.substr(wanted.name.size()));
+  if (rest.empty()) {
+    own_unit = WithoutBrackets(own_unit);
+    return own_unit.empty() ? units.Of(wanted.dimension) : HeaderUnit(own_unit, wanted.dimension);
+  }
+  if (rest.front() == '_') return UnitSize(rest.substr(1), wanted.dimension);
+  if (rest.front() == '/') return HeaderUnit(WithoutBlanks(rest.substr(1)), wanted.dimension);
+  const std::string_view inside = WithoutBrackets(rest);
+  if (inside.size() == rest.size()) return std::nullopt;
+  return wanted.dimension == Dimension::kNone ? 1.0 : HeaderUnit(inside, wanted.dimension);
 }
 
 Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const std::vector<std::string>& found,
-                                                const std::string& place) {
+                                                const std::string& place, const std::vector<std::string>& units) {
   std::vector<ChosenColumn> chosen;
   const std::string shown = Listed(Masked(found));
   for (const ScanColumn& wanted : format.columns) {
     std::optional<ChosenColumn> match;
-    for (size_t i = 0; i < found.size(); ++i) {
-      const auto factor = MatchColumn(wanted, found[i], format.units);
-      if (!factor) continue;
-      if (match) {
-        return Error{place + ": found the column '" + wanted.name + "' twice, as '" + found[match->index] + "' and '" +
-                     found[i] + "', expected it once"};
+    ScanColumn named = wanted;
+    if (const auto own = format.names.find(wanted.name); own != format.names.end()) named.name = own->second;
+    const std::string called = named.name;
+    for (const bool any_case : {false, true}) {
+      named.name = any_case ? Lower(called) : called;
+      for (size_t i = 0; i < found.size(); ++i) {
+        const std::string name = any_case ? Lower(found[i]) : found[i];
+        const auto factor = MatchColumn(named, name, format.units, i < units.size() ? units[i] : "");
+        if (!factor) continue;
+        if (match) {
+          return Error{place + ": found the column '" + wanted.name + "' twice, as '" + found[match->index] +
+                       "' and '" + found[i] + "', expected it once"};
+        }
+        match = ChosenColumn{.name = wanted.name, .index = i, .factor = *factor};
       }
-      match = ChosenColumn{.name = wanted.name, .index = i, .factor = *factor};
+      if (match) break;
     }
+    named.name = called;
     if (!match && wanted.required) {
-      return Error{place + ": found the columns " + shown + ", expected also " + PossibleNames(wanted) + wanted.remedy,
+      return Error{place + ": found the columns " + shown + ", expected also " + PossibleNames(named) + wanted.remedy,
                    ErrorKind::kMissingColumns};
     }
     if (match) chosen.push_back(*match);
@@ -88,6 +150,37 @@ Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const 
   }
   if (chosen.empty()) return Error{place + ": found the columns " + shown + ", none of them is known"};
   return chosen;
+}
+
+void ReadFormat(YamlMap map, ScanFormat* format) {
+  if (map.IsMap("columns")) {
+    YamlMap names = map.Map("columns");
+    for (const std::string& name : names.Keys()) {
+      const auto is_it = [&](const ScanColumn& wanted) { return wanted.name == name; };
+      if (std::none_of(format->columns.begin(), format->columns.end(), is_it))
+        names.Fail(name, "no column has this name here; the file's own name stands behind the colon");
+      format->names[name] = names.Text(name);
+    }
+  } else if (map.Has("columns")) {
+    format->npy_columns = map.Texts("columns");
+  }
+  if (map.IsNumber("invalid")) {
+    format->invalid = map.Number("invalid");
+  } else if (map.IsList("invalid")) {
+    for (const std::string& text : map.Texts("invalid")) {
+      const ParsedNumber number = ParseNumber(text);
+      if (number.kind != NumberKind::kNumber) format->text.missing.push_back(text);
+      else if (format->invalid && *format->invalid != number.value)
+        map.Fail("invalid", "expected one number, and any texts besides");
+      else format->invalid = number.value;
+    }
+  } else if (map.Has("invalid")) {
+    format->text.missing.push_back(map.Text("invalid"));
+  }
+  if (map.Has("text")) ReadTextFormat(map.Map("text"), &format->text);
+  if (!map.Has("where")) return;
+  YamlMap where = map.Map("where");
+  for (const std::string& column : where.Keys()) format->text.where.emplace_back(column, where.Text(column));
 }
 
 Error NoPoints(const ScanFormat& format, int64_t lines_in_file) {

@@ -2,15 +2,18 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+#include "io/dialect.h"
 #include "io/number.h"
 #include "io/result.h"
 #include "io/units.h"
+#include "io/yaml.h"
 
 namespace scancal {
 
@@ -34,7 +37,9 @@ struct ScanFormat {  // how one scan file is to be read, as the data set declare
   Units units;                                   // a unit suffix of a column's name (angle_deg, y_mm) wins
   std::vector<ScanColumn> columns;               // wanted; others in the file are ignored
   std::vector<std::vector<std::string>> one_of;  // of these groups the file needs one whole; empty: any will do
-  std::vector<std::string> npy_columns;          // names of the columns of a .npy
+  std::vector<std::string> npy_columns;          // names of the columns of a .npy, or of a text without names
+  std::map<std::string, std::string> names;      // what the file calls a wanted column: {"angle", "Encoder"}
+  TextFormat text;                               // of text: what is declared of its dialect
   std::optional<double> invalid;                 // this value, as it stands in the file, is a missing point
   std::optional<WideLayout> layout;
   std::optional<std::pair<int64_t, int64_t>>
@@ -48,9 +53,13 @@ struct ScanBatch {                           // equally long columns, in the ord
   int Find(std::string_view name) const;  // index, or -1
 };
 
-// CSV (header, comma), wide CSV (layout), .npy (float64 | float32, C order, shape (points, columns)); by layout, then
-// extension. Missing points (empty, nan, `invalid` in a wanted column) are left out and counted. inf, text, overflow, a
-// wrong number of fields are errors: "left.csv:1042:8: y: found "12.3.4", expected a number".
+// What a data set, or a target of its own, says of its files: `columns`, `invalid`, `text` and `where`.
+void ReadFormat(YamlMap map, ScanFormat* format);
+
+// Delimited text in any dialect (FindHead), the same with a profile a line (layout), .npy (float64 | float32, C order,
+// shape (points, columns)); by layout, then extension. Missing points (empty, nan, `invalid` in a wanted column) are
+// left out and counted. inf, text, overflow, a wrong number of fields are errors: "left.csv:1042:8: y: found "12.3.4",
+// expected a number".
 class ScanReader {
  public:
   static Result<std::unique_ptr<ScanReader>> Open(const ScanFormat& format);
@@ -59,7 +68,8 @@ class ScanReader {
   virtual Result<bool> Next(ScanBatch* batch) = 0;
   virtual int64_t bytes_read() const = 0;  // so far, for a progress bar
   virtual int64_t bytes_total() const = 0;
-  int64_t missing() const { return missing_; }  // so far
+  virtual std::string Describe() const { return ""; }  // what was found of the file's dialect; empty: a plain file
+  int64_t missing() const { return missing_; }         // so far
 
  protected:
   static constexpr size_t kBatchPoints = 100'000;
@@ -79,11 +89,15 @@ struct ChosenColumn {
 
 // The wanted columns that the file has, in the order of format.columns. `place`: of the header, for complaints:
 // "left.csv:1". A required one that is missing, or one that is there twice ("y" and "y_mm"): an error.
+// Names are told apart by case only where both are there ("y_mm", "Y_mm"). units: of the columns, from a row of their
+// own; empty: none.
 Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const std::vector<std::string>& found,
-                                                const std::string& place);
+                                                const std::string& place, const std::vector<std::string>& units = {});
 
-// The unit of `wanted` if `found` is its name, plain ("y") or with a unit ("y_mm"); else empty.
-std::optional<double> MatchColumn(const ScanColumn& wanted, std::string_view found, const Units& units);
+// The unit of `wanted` if `found` is its name, plain ("y", in which case it is that of its own row, or the declared
+// one) or with a unit ("y_mm", "Y [mm]", "y (um)", "z/mm"); else empty.
+std::optional<double> MatchColumn(const ScanColumn& wanted, std::string_view found, const Units& units,
+                                  std::string_view own_unit = {});
 
 // "left.csv: no points": the file has none, or the wanted lines have none.
 Error NoPoints(const ScanFormat& format, int64_t lines_in_file);

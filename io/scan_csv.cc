@@ -1,4 +1,5 @@
 // Scans in delimited text: a point or a profile per line.
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <utility>
@@ -13,7 +14,8 @@ bool IsWithoutNames(const std::vector<std::string>& header) {
   const std::string first = header.front().substr(0, header.front().find_first_of(";\t "));
   if (header.size() == 1) return ParseNumber(first).kind == NumberKind::kNumber;
   bool any_number = false;
-  for (const std::string& text : header) {
+  for (std::string text : header) {
+    std::replace(text.begin(), text.end(), ',', '.');
     const NumberKind kind = ParseNumber(text).kind;
     if (kind == NumberKind::kText) return false;
     any_number |= kind == NumberKind::kNumber;
@@ -29,6 +31,7 @@ class CsvReader : public ScanReader {
         invalid_(format.invalid.value_or(std::numeric_limits<double>::infinity())) {}
   int64_t bytes_read() const override { return text_.bytes_read(); }
   int64_t bytes_total() const override { return text_.bytes_total(); }
+  std::string Describe() const override { return text_.Describe(); }
 
  protected:
   // From here on only the wanted lines.
@@ -58,20 +61,46 @@ class LongReader : public CsvReader {
   using CsvReader::CsvReader;
 
   Result<void> ReadHeader() {
-    SCANCAL_ASSIGN_OR_RETURN(const std::string_view row, text_.Peek());
-    if (row.empty()) return NoPoints(format_, text_.line());
-    std::vector<std::string> header = SplitCells(row);
-    text_.Skip();
-    if (IsWithoutNames(header))
-      return Error{text_.Place() + ": found numbers, expected a header line with the names of the columns" +
-                   text_.WrongSeparator()};
-    auto chosen = ChooseColumns(format_, header, text_.Place());
+    const auto match = [&](const std::vector<std::string>& names) {
+      std::vector<size_t> indices;
+      const auto columns = ChooseColumns(format_, names, "");
+      if (columns.ok())
+        for (const ChosenColumn& column : *columns) indices.push_back(column.index);
+      return indices;
+    };
+    std::optional<NumberRows> nameless;
+    if (!format_.npy_columns.empty()) nameless = {format_.npy_columns.size(), true, match(format_.npy_columns)};
+    SCANCAL_ASSIGN_OR_RETURN(const TextHead head, text_.TakeHead(format_.text, match, nameless));
+    if (head.names.empty() && !head.is_known) {
+      SCANCAL_RETURN_IF_ERROR(text_.Peek());
+      return NoPoints(format_, text_.line());
+    }
+    std::vector<std::string> header = head.is_known && head.is_nameless ? format_.npy_columns : head.names;
+    if (!head.is_known && IsWithoutNames(header))
+      return Error{text_.Place() + ": found numbers, expected a header line with the names of the columns; or " +
+                   "columns: [angle, y, z] in the data set, in the order of the file" + text_.WrongSeparator()};
+    auto chosen = ChooseColumns(format_, header, text_.Place(), head.units);
     if (!chosen.ok()) return Error{chosen.error().message + text_.WrongSeparator(), chosen.error().kind};
     columns_ = *std::move(chosen);
+    SCANCAL_RETURN_IF_ERROR(KeepWhere(header));
+    text_.TreatAsMissing(format_.text.missing);
     std::vector<ExpectedCells> cells(header.size());
     for (const ChosenColumn& column : columns_) cells[column.index] = {Cells::kNumberOrNothing, column.name};
     text_.Expect(std::move(cells), std::move(header), CellCount::kLast);
     KeepLines();
+    return {};
+  }
+
+  Result<void> KeepWhere(const std::vector<std::string>& header) {
+    std::vector<std::pair<size_t, std::string>> where;
+    for (const auto& [name, value] : format_.text.where) {
+      ScanFormat only;
+      only.columns = {{name, Dimension::kNone}};
+      const auto column = ChooseColumns(only, header, text_.Place() + ": where");
+      if (!column.ok()) return column.error();
+      where.emplace_back(column->front().index, value);
+    }
+    text_.KeepWhere(std::move(where));
     return {};
   }
 
@@ -122,15 +151,18 @@ class WideReader : public CsvReader {
       return Error{text_.name() + ": layout: found angle_column: " + std::to_string(layout_.angle_column) +
                    ", first_column: " + std::to_string(layout_.first_column) +
                    ", expected the column of the angle, counted from 1, before the first cell"};
+    const NumberRows rows{first_ + 1, false, {angle_}};
+    SCANCAL_ASSIGN_OR_RETURN(const TextHead head, text_.TakeHead(format_.text, nullptr, rows));
     SCANCAL_ASSIGN_OR_RETURN(std::string_view row, text_.Peek());
-    const std::vector<std::string> header = SplitCells(row);
+    const std::vector<std::string> header = head.is_known ? head.names : SplitCells(row);
     if (IsHeader(header)) {  // units in names ("angle_rad", "y_um") win
       const Units& units = format_.units;
       angle_factor_ = MatchColumn(ColumnOf("angle"), header[angle_], units).value_or(angle_factor_);
       if (first_ < header.size())
         value_factor_ = MatchColumn(ColumnOf(layout_.value), header[first_], units).value_or(value_factor_);
-      text_.Skip();
+      if (!head.is_known) text_.Skip();
     }
+    text_.TreatAsMissing(format_.text.missing);
     KeepLines();
     SCANCAL_ASSIGN_OR_RETURN(row, text_.Peek());
     // Up to the first cell, or as many as this row can have: if that is fewer it is refused.

@@ -13,18 +13,28 @@ Result<Table> Table::Read(const std::filesystem::path& path, const std::vector<T
   SCANCAL_ASSIGN_OR_RETURN(DelimitedText text, DelimitedText::Open(path));
   Table table;
   table.name_ = text.name();
-  const bool nameless = !header.empty();
-  if (!nameless) {
-    SCANCAL_ASSIGN_OR_RETURN(const std::string_view row, text.Peek());
-    if (row.empty()) return Error{table.name_ + ": the file is empty, expected a header line and lines of data"};
-    header = SplitCells(row);
-    text.Skip();
-  }
   ScanFormat format;
   format.units = units;
   for (const TableColumn& column : columns)
     format.columns.push_back({column.name, column.dimension, column.required, column.remedy});
-  auto chosen = ChooseColumns(format, header, nameless ? table.name_ : text.Place());
+  const bool nameless = !header.empty();
+  const auto match = [&](const std::vector<std::string>& names) {
+    std::vector<size_t> numbers;
+    const auto found = ChooseColumns(format, names, "");
+    for (size_t k = 0; found.ok() && k < found->size(); ++k)
+      for (const TableColumn& column : columns)
+        if (column.name == (*found)[k].name && column.cells >= Cells::kNumber) numbers.push_back((*found)[k].index);
+    if (found.ok() && numbers.empty()) numbers.push_back(found->front().index);
+    return numbers;
+  };
+  std::optional<NumberRows> rows;
+  if (nameless) rows = {header.size(), true, match(header)};
+  SCANCAL_ASSIGN_OR_RETURN(const TextHead head, text.TakeHead({}, nameless ? ColumnMatcher() : match, rows));
+  if (!nameless) {
+    if (head.names.empty()) return Error{table.name_ + ": the file is empty, expected a header line and lines of data"};
+    header = head.names;
+  }
+  auto chosen = ChooseColumns(format, header, nameless ? table.name_ : text.Place(), head.units);
   if (!chosen.ok()) return Error{chosen.error().message + (nameless ? "" : text.WrongSeparator()), chosen.error().kind};
   std::sort(chosen->begin(), chosen->end(), [](const auto& a, const auto& b) { return a.index < b.index; });
   std::vector<ExpectedCells> cells(header.size(), {Cells::kTextOrNothing});

@@ -34,4 +34,21 @@ inline std::optional<double> UnitSize(std::string_view unit, Dimension dimension
   return std::nullopt;
 }
 
+// The same of a unit as headers of tables write it: also cm, nm, micron, degrees, mrad and the signs, in any case.
+inline std::optional<double> HeaderUnit(std::string_view unit, Dimension dimension) {
+  std::string lower(unit);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
+  if (const auto known = UnitSize(lower, dimension)) return known;
+  if (dimension == Dimension::kLength) {
+    if (lower == "\u00B5m" || lower == "\u03BCm" || lower == "micron") return 0.001;
+    if (lower == "cm") return 10.0;
+    if (lower == "nm") return 1e-6;
+  }
+  if (dimension == Dimension::kAngle) {
+    if (lower == "\u00B0" || lower == "degree" || lower == "degrees") return kDegree;
+    if (lower == "mrad") return 0.001;
+  }
+  return std::nullopt;
+}
+
 }  // namespace scancal

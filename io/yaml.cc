@@ -247,6 +247,11 @@ bool YamlMap::IsMap(std::string_view key) const {
   return value && value->value.IsMap();
 }
 
+bool YamlMap::IsList(std::string_view key) const {
+  const auto value = Find(*node_, key);
+  return value && value->value.IsSequence();
+}
+
 bool YamlMap::IsNumber(std::string_view key) const {
   const auto value = Find(*node_, key);
   return value && value->value.IsScalar() && ParseNumber(value->value.Scalar()).kind == NumberKind::kNumber;

@@ -29,6 +29,7 @@ class YamlMap {
   std::vector<std::string> Keys() const;  // in the order of the file
   bool IsMap(std::string_view key) const;
   bool IsNumber(std::string_view key) const;
+  bool IsList(std::string_view key) const;
   std::string Text(std::string_view key, std::optional<std::string> otherwise = std::nullopt);  // no default: required
   double Number(std::string_view key, std::optional<double> otherwise = std::nullopt);          // finite
   std::vector<std::string> Texts(std::string_view key);

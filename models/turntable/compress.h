@@ -66,6 +66,7 @@ struct RawScan {
   double copied = 0;                 // removed by DropCopies
   double lines = 0;                  // profiles that were read
   std::vector<Sentence> warnings;
+  std::string dialect;               // of its text, as it was found; empty: plain
   bool timed = false;                        // a column says the time
   double step = 0;                           // in which depth (range) is written, mm; after DropCopies
   std::optional<bool> turned_within_angles;  // whether profiles at one angle were taken while it turned
@@ -151,6 +152,7 @@ struct Placement {
   LagSums lag_sums;                         // of the residuals from each profile's own line, with three points or more
   ResidualHistogram histogram;              // of the same, by their pooled standard deviation
   std::vector<Sentence> warnings;           // of reading
+  std::string dialect;                      // of the text that was read; empty: plain, or none was read
   bool timed = false;                       // the profiles' times were logged; else they are their numbers
   double Points() const;
   double Sweep() const;    // largest minus smallest angle, rad

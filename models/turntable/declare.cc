@@ -77,14 +77,13 @@ ScanDeclaration ReadTarget(YamlMap target, const YamlMap& top, const Dataset& da
   if (scan.scan.empty()) target.Fail("scan", "expected the path of a scan file");
   scan.format.path = dataset.file.parent_path() / scan.scan;
   scan.format.units = dataset.units;
-  for (YamlMap map : {top, target}) {
-    if (auto layout = ReadLayout(map)) scan.format.layout = layout;
-    if (map.Has("columns")) scan.format.npy_columns = map.Texts("columns");
-    if (map.Has("invalid")) scan.format.invalid = map.Number("invalid");
-  }
-  ReadKeep(target, dataset.units, &scan);
   scan.format.one_of = {{"y", "z"}, {"bearing", "range"}};
   for (const auto& [name, dimension] : kColumns) scan.format.columns.push_back({name, dimension, name == "angle"});
+  for (YamlMap map : {top, target}) {
+    if (auto layout = ReadLayout(map)) scan.format.layout = layout;
+    ReadFormat(map, &scan.format);
+  }
+  ReadKeep(target, dataset.units, &scan);
   for (const KeepInterval& keep : scan.keep)
     if (!kColumns.contains(keep.column)) scan.format.columns.push_back({keep.column, Dimension::kNone, true});
   return scan;

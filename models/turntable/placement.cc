@@ -405,6 +405,7 @@ Placement MakePlacement(const RawScan& scan, const PointsOnPlane& points) {
   placement.name = scan.name;
   placement.missing = scan.missing;
   placement.warnings = scan.warnings;
+  placement.dialect = scan.dialect;
   placement.timed = scan.timed;
   if (scan.copied > 0) placement.set_aside[kReasonCopied] = scan.copied;
   if (scan.off_line > 0) placement.set_aside[kReasonOffLine] = scan.off_line;

@@ -205,6 +205,7 @@ Result<RawScan> ReadScan(const ScanDeclaration& scan, const Senses& senses,
   if (gatherer.points() == 0)
     return Error{scan.format.path.string() + ": target " + scan.name + ": no point is left; widen its keep: intervals"};
   result.missing = static_cast<double>(reader->missing());
+  result.dialect = reader->Describe();
   SCANCAL_RETURN_IF_ERROR(TakeIn(gatherer.Take(), scan, gatherer, senses.depth, &result));
   NoteRoundedAngles(&result);
   if (!gatherer.by_key() && LooksShuffled(result.compressed)) result.warnings.push_back(Say(kLooksShuffled, scan.name));

@@ -27,6 +27,18 @@ constexpr Message<> kPlateCutOff{
     "ihre "
     "Form ist nicht in jeder dieselbe Funktion. Für jeden Parameter wurde das Ungünstigere aus einer Form und mehreren "
     "genommen"};
+
+// How the files were read, where one is not plain: what all have in common once.
+std::string Dialects(const std::vector<Placement>& placements) {
+  const auto like_first = [&](const Placement& each) { return each.dialect == placements.front().dialect; };
+  const bool same = std::all_of(placements.begin(), placements.end(), like_first);
+  std::string text;
+  for (const Placement& each : placements)
+    if (!each.dialect.empty() && (!same || text.empty()))
+      text += fmt::format(" {}: {}.", same ? "Text" : each.name, each.dialect);
+  return text;
+}
+
 const char kSearching[] = "searching M, N";
 constexpr int kRoundsOfReading = 4;
 constexpr double kNodesOfReading = 60;  // a side
@@ -255,9 +267,10 @@ std::string Scanner::Describe() const {
   return fmt::format(
       "{}, table seen to turn {} from +Z; {} targets, {} profiles, {} points used, {} missing, {} set aside; M "
       "searched "
-      "from {:g} to {:g} mm, N from {:g} to {:g} mm.",
+      "from {:g} to {:g} mm, N from {:g} to {:g} mm.{}",
       Opening(declaration_.dataset, "turntable"), declaration_.senses.angle > 0 ? "clockwise" : "counterclockwise",
-      placements_.size(), profiles, points, missing, off, box.lower[0], box.upper[0], box.lower[1], box.upper[1]);
+      placements_.size(), profiles, points, missing, off, box.lower[0], box.upper[0], box.lower[1], box.upper[1],
+      Dialects(placements_));
 }
 
 Result<void> Scanner::WriteSurface(const std::filesystem::path& file) const {

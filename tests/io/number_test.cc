@@ -123,13 +123,16 @@ TEST(NumberTest, Kinds) {
   EXPECT_EQ(ParseNumber(" 1.5 ").value, 1.5);
   EXPECT_EQ(ParseNumber("+1.5").value, 1.5);
   EXPECT_EQ(ParseNumber("\" 1.5\"").value, 1.5);
-  for (const char* text : {"", "  ", "\"\"", "nan", "NaN", "-NAN"}) {
+  EXPECT_EQ(ParseNumber("\u22121.5").value, -1.5);
+  for (const char* text :
+       {"", "  ", "\"\"", "nan", "NaN", "-NAN", "NA", "#N/A", "NULL", "--", "1.#QNAN", "-nan(ind)"}) {
     EXPECT_EQ(ParseNumber(text).kind, NumberKind::kMissing) << text;
   }
   for (const char* text : {"inf", "-Inf", "+INFINITY"}) {
     EXPECT_EQ(ParseNumber(text).kind, NumberKind::kInfinite) << text;
   }
-  for (const char* text : {"12.3.4", "1,5", "0x10", "+-1", "--1", "1 2", "nan(1)", "1e", "-", "\"1", "1_000", "NA"}) {
+  for (const char* text :
+       {"12.3.4", "1,5", "0x10", "+-1", "--1", "1 2", "nan(1)", "1e", "-", "\"1", "1_000", "N", "\u2212-1", "---"}) {
     EXPECT_EQ(ParseNumber(text).kind, NumberKind::kText) << text;
   }
 }

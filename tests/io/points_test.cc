@@ -126,7 +126,7 @@ TEST(ReadPoints, WrongFilesAreNamed) {
   const auto file = folder.path() / "points.csv";
   folder.Write("points.csv", "alpha,z\n1,2\n");
   EXPECT_THAT(Refusal({"", file, {}}), AllOf(HasSubstr("points.csv:1: found the columns alpha, z"), HasSubstr("'y'")));
-  folder.Write("points.csv", "1,2\n3,4\n");
+  folder.Write("points.csv", "1,2,5\n3,4,5\n");
   EXPECT_THAT(Refusal({"", file, {}}), HasSubstr("expected a header line"));
   folder.Write("points.csv", "alpha,y\n1,2\n3,\n");
   EXPECT_THAT(Refusal({"", file, {}}), HasSubstr("points.csv: found 1 points with a missing number"));

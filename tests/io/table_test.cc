@@ -126,7 +126,7 @@ TEST_F(TableTest, EveryLineHasAsManyCells) {
 TEST_F(TableTest, HeadersAreChecked) {
   EXPECT_THAT(Error("ball,y\nA,1\n"),
               EndsWith("t.csv:1: found the columns ball, y, expected also 'x' (or x_mm, _m, _um); name it x"));
-  EXPECT_THAT(Error("ball;x\nA;1\n"), HasSubstr("semicolons"));
+  EXPECT_THAT(Error("ball;y\nA;1\n"), HasSubstr("semicolons"));
   EXPECT_THAT(Error("ball,x,x_mm\nA,1,1\n"), HasSubstr("the column 'x' twice"));
   EXPECT_THAT(Error(""), HasSubstr("the file is empty"));
   EXPECT_THAT(Error("# nothing\n"), HasSubstr("the file is empty"));
