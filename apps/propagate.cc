@@ -31,8 +31,13 @@ Result<int> Propagated(const std::string& file) {
   SCANCAL_ASSIGN_OR_RETURN(const Rechecked checked, RecheckForUse(file));
   const Calibration& calibration = checked.again ? *checked.again : checked.found;  // the same, and more of it
   SCANCAL_ASSIGN_OR_RETURN(const ScannerKind* kind, FindScannerKind(calibration.model, file + ": model"));
-  SCANCAL_ASSIGN_OR_RETURN(const Propagation propagation,
-                           kind->Propagate(calibration, {TypedPoints(), FLAGS_points_file, units}, FLAGS_distance));
+  PointRequest points{TypedPoints(), FLAGS_points_file, units};
+  if (checked.scanner) {
+    YamlMap declared = checked.scanner->dataset().yaml;
+    points.angle_sense = declared.Text("rotation", "") == "counterclockwise" ? -1 : 1;
+    points.depth_sense = declared.Text("depth", "") == "towards" ? -1 : 1;
+  }
+  SCANCAL_ASSIGN_OR_RETURN(const Propagation propagation, kind->Propagate(calibration, points, FLAGS_distance));
   if (!FLAGS_out.empty()) SCANCAL_RETURN_IF_ERROR(WriteFile(FLAGS_out, ToCsv(propagation)));
   std::printf("%s", ToText(propagation).c_str());
   for (const std::string& warning : propagation.warnings)

@@ -12,9 +12,10 @@
 namespace scancal {
 
 struct PointRequest {
-  std::string typed;           // "10,50,-20; 12,50,-20": in the order of the columns
-  std::filesystem::path file;  // one point a line, as a scan file has them; empty: none
-  Units units;                 // of the typed ones, and of columns without a unit in their name
+  std::string typed;                        // "10,50,-20; 12,50,-20": in the order of the columns
+  std::filesystem::path file;               // one point a line, as a scan file has them; empty: none
+  Units units;                              // of the typed ones, and of columns without a unit in their name
+  double angle_sense = 1, depth_sense = 1;  // of a scanner's readings, as its data set declares them
 };
 
 // The typed ones first; one number per column, mm and rad. An Error without any, or where a number is missing.

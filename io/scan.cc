@@ -164,6 +164,7 @@ void ReadFormat(YamlMap map, ScanFormat* format) {
   } else if (map.Has("columns")) {
     format->npy_columns = map.Texts("columns");
   }
+  if (map.Has("angle")) format->angle = ReadLoggedAngle(map.Map("angle"), format->units);
   if (map.IsNumber("invalid")) {
     format->invalid = map.Number("invalid");
   } else if (map.IsList("invalid")) {
@@ -197,6 +198,7 @@ int ScanBatch::Find(std::string_view name) const {
 }
 
 Result<std::unique_ptr<ScanReader>> ScanReader::Open(const ScanFormat& format) {
+  if (format.angle) return OpenLogged(format);
   if (format.layout) return OpenWideCsv(format);
   return IsNpy(format.path) ? OpenNpy(format) : OpenCsv(format);
 }

@@ -32,6 +32,17 @@ struct WideLayout {            // one profile per line
   double start = 0, step = 1;  // of `across`, declared unit
 };
 
+// How a file says the angle of a profile where no column has it.
+struct LoggedAngle {
+  std::string column = "angle";  // counts, or a time
+  double rad_per_count = 1;      // or per unit of time; is_step: from one profile to the next
+  double zero = 0;               // the count at angle 0
+  double wrap = 0;               // counts after which the counter starts again; 0: it does not
+  bool is_step = false;          // no column: the first profile is at `start`, the others follow by their number
+  double start = 0;              // rad
+  std::string echo;              // what was declared, in words
+};
+
 struct ScanFormat {  // how one scan file is to be read, as the data set declares it
   std::filesystem::path path;
   Units units;                                   // a unit suffix of a column's name (angle_deg, y_mm) wins
@@ -39,6 +50,7 @@ struct ScanFormat {  // how one scan file is to be read, as the data set declare
   std::vector<std::vector<std::string>> one_of;  // of these groups the file needs one whole; empty: any will do
   std::vector<std::string> npy_columns;          // names of the columns of a .npy, or of a text without names
   std::map<std::string, std::string> names;      // what the file calls a wanted column: {"angle", "Encoder"}
+  std::optional<LoggedAngle> angle;              // in place of a column with angles
   TextFormat text;                               // of text: what is declared of its dialect
   std::optional<double> invalid;                 // this value, as it stands in the file, is a missing point
   std::optional<WideLayout> layout;
@@ -53,7 +65,7 @@ struct ScanBatch {                           // equally long columns, in the ord
   int Find(std::string_view name) const;  // index, or -1
 };
 
-// What a data set, or a target of its own, says of its files: `columns`, `invalid`, `text` and `where`.
+// What a data set, or a target of its own, says of its files: `columns`, `angle`, `invalid`, `text` and `where`.
 void ReadFormat(YamlMap map, ScanFormat* format);
 
 // Delimited text in any dialect (FindHead), the same with a profile a line (layout), .npy (float64 | float32, C order,
@@ -80,6 +92,9 @@ class ScanReader {
 Result<std::unique_ptr<ScanReader>> OpenCsv(const ScanFormat& format);
 Result<std::unique_ptr<ScanReader>> OpenWideCsv(const ScanFormat& format);
 Result<std::unique_ptr<ScanReader>> OpenNpy(const ScanFormat& format);
+// Any of them, with the angles of format.angle.
+Result<std::unique_ptr<ScanReader>> OpenLogged(const ScanFormat& format);
+LoggedAngle ReadLoggedAngle(YamlMap map, const Units& units);  // {column: Encoder, counts_per_turn: 36000, zero: 1200}
 
 struct ChosenColumn {
   std::string name;   // as wanted: "y"

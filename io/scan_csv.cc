@@ -140,18 +140,19 @@ class WideReader : public CsvReader {
   WideReader(const ScanFormat& format, DelimitedText text)
       : CsvReader(format, std::move(text)),
         layout_(*format.layout),
-        angle_(static_cast<size_t>(layout_.angle_column - 1)),
+        has_angle_(layout_.angle_column > 0),
+        angle_(static_cast<size_t>(std::max(layout_.angle_column, 1) - 1)),
         first_(static_cast<size_t>(layout_.first_column - 1)),
         angle_factor_(format.units.Of(ColumnOf("angle").dimension)),
         across_factor_(format.units.Of(ColumnOf(layout_.across).dimension)),
         value_factor_(format.units.Of(ColumnOf(layout_.value).dimension)) {}
 
   Result<void> ReadHeader() {
-    if (layout_.angle_column < 1 || layout_.angle_column >= layout_.first_column)
+    if (layout_.angle_column < 0 || layout_.angle_column >= layout_.first_column)
       return Error{text_.name() + ": layout: found angle_column: " + std::to_string(layout_.angle_column) +
                    ", first_column: " + std::to_string(layout_.first_column) +
                    ", expected the column of the angle, counted from 1, before the first cell"};
-    const NumberRows rows{first_ + 1, false, {angle_}};
+    const NumberRows rows{first_ + 1, false, {has_angle_ ? angle_ : first_}};
     SCANCAL_ASSIGN_OR_RETURN(const TextHead head, text_.TakeHead(format_.text, nullptr, rows));
     SCANCAL_ASSIGN_OR_RETURN(std::string_view row, text_.Peek());
     const std::vector<std::string> header = head.is_known ? head.names : SplitCells(row);
@@ -168,7 +169,7 @@ class WideReader : public CsvReader {
     // Up to the first cell, or as many as this row can have: if that is fewer it is refused.
     std::vector<ExpectedCells> cells(std::min(first_, row.size()) + 1);
     cells.back() = {Cells::kNumberOrNothing, layout_.value};
-    if (angle_ < cells.size()) cells[angle_] = {Cells::kNumberOrNothing, "angle"};
+    if (has_angle_ && angle_ < cells.size()) cells[angle_] = {Cells::kNumberOrNothing, "angle"};
     text_.Expect(std::move(cells), {}, CellCount::kAny);
     return {};
   }
@@ -188,7 +189,7 @@ class WideReader : public CsvReader {
         batch->columns[i].resize(most);
         targets[i] = batch->columns[i].data();
       }
-      const double angle = text_.Number(angle_), profile = static_cast<double>(text_.line());
+      const double angle = has_angle_ ? text_.Number(angle_) : 0, profile = static_cast<double>(text_.line());
       const bool no_angle = IsMissing(angle);
       for (size_t k = first_; k < cells_; ++k) {
         const double value = text_.Number(k);
@@ -233,6 +234,7 @@ class WideReader : public CsvReader {
   }
 
   const WideLayout layout_;
+  bool has_angle_;
   size_t angle_, first_;  // columns, 0-based
   double angle_factor_, across_factor_, value_factor_;
   size_t cells_ = 0;  // of every row

@@ -91,7 +91,12 @@ ScanDeclaration ReadTarget(YamlMap target, const YamlMap& top, const Dataset& da
 
 bool SamePoints(const ScanDeclaration& a, const ScanDeclaration& b) {
   return a.format.path.lexically_normal() == b.format.path.lexically_normal() && a.format.lines == b.format.lines &&
-         a.keep == b.keep;
+         a.keep == b.keep && a.format.text.where == b.format.text.where;
+}
+
+bool IsKnown(const char* name, const Dataset& dataset) {
+  return std::any_of(dataset.parameters.begin(), dataset.parameters.end(),
+                     [&](const ParameterSetting& each) { return each.name == name && each.role != "estimate"; });
 }
 
 GridBox ReadSearch(YamlMap top, const Units& units) {
@@ -319,7 +324,7 @@ class Influences {
 
 }  // namespace
 
-Result<Declaration> Declare(const Dataset& dataset, Model* model) {
+Result<Declaration> Declare(const Dataset& dataset, Model* model, bool searches) {
   Declaration result;
   result.dataset = dataset;
   YamlMap top = dataset.yaml;
@@ -334,7 +339,9 @@ Result<Declaration> Declare(const Dataset& dataset, Model* model) {
     result.senses.depth = depth == "towards" ? -1 : 1;
     result.depth_declared = true;
   }
-  result.search = ReadSearch(top, dataset.units);
+  if (top.Has("search") || (searches && !(IsKnown("M", dataset) && IsKnown("N", dataset))))
+    result.search = ReadSearch(top, dataset.units);
+  else result.searches = false;
   std::set<std::string> names;
   for (YamlMap target : top.Maps("targets")) {
     result.scans.push_back(ReadTarget(target, top, dataset));

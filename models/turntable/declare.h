@@ -34,6 +34,7 @@ struct Declaration {
   Senses senses;
   bool depth_declared = false;  // which way it grows
   GridBox search;               // of M and N, mm
+  bool searches = true;         // false: `search` is not declared, for M and N are known or nothing is calibrated
   std::vector<ScanDeclaration> scans;
   std::optional<double> line_correlation;  // points; declared
   bool drift_declared = false;             // `drift`, whatever it is
@@ -43,7 +44,7 @@ struct Declaration {
 };
 
 // Takes every key of the data set; role, value and u of `model`'s quantities are set from parameters and influences. An
-// Error names the key and what was expected.
-Result<Declaration> Declare(const Dataset& dataset, Model* model);
+// Error names the key and what was expected. searches: M and N are looked for, unless they are known.
+Result<Declaration> Declare(const Dataset& dataset, Model* model, bool searches = true);
 
 }  // namespace scancal::turntable

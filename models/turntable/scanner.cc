@@ -265,11 +265,12 @@ std::string Scanner::Describe() const {
     for (const auto& [reason, count] : placement.set_aside) off += count;
   }
   return fmt::format(
-      "{}, table seen to turn {} from +Z; {} targets, {} profiles, {} points used, {} missing, {} set aside; M "
-      "searched "
-      "from {:g} to {:g} mm, N from {:g} to {:g} mm.{}",
+      "{}, table seen to turn {} from +Z; {} targets, {} profiles, {} points used, {} missing, {} set aside{}.{}",
       Opening(declaration_.dataset, "turntable"), declaration_.senses.angle > 0 ? "clockwise" : "counterclockwise",
-      placements_.size(), profiles, points, missing, off, box.lower[0], box.upper[0], box.lower[1], box.upper[1],
+      placements_.size(), profiles, points, missing, off,
+      declaration_.searches ? fmt::format("; M searched from {:g} to {:g} mm, N from {:g} to {:g} mm", box.lower[0],
+                                          box.upper[0], box.lower[1], box.upper[1])
+                            : "",
       Dialects(placements_));
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include "io/progress.h"
 #include "io/units.h"
@@ -198,11 +199,55 @@ void AddVolume(const std::vector<Placement>& placements, Calibration* calibratio
   }
 }
 
+namespace {
+
+// As alpha, y, z: typed ones, and a file with the columns of a scan, say the angle that the encoder shows; the column
+// alpha of a table that was written here is that angle with its sense. One turn more or less is the same place.
+Result<std::vector<std::vector<double>>> Readings(const PointRequest& points, const ScannedVolume& volume) {
+  const ScanColumn angle{"angle", Dimension::kAngle}, alpha{"alpha", Dimension::kAngle}, y{"y", Dimension::kLength},
+      z{"z", Dimension::kLength}, bearing{"bearing", Dimension::kAngle}, range{"range", Dimension::kLength};
+  std::vector<std::vector<double>> readings;
+  const auto add = [&](std::vector<std::vector<double>> read, bool is_reading, bool is_lidar) {
+    for (std::vector<double>& p : read) {
+      if (is_lidar) p = {p[0], p[2] * std::cos(p[1]), p[2] * std::sin(p[1])};
+      if (is_reading) p = {points.angle_sense * p[0], points.depth_sense * p[1], p[2]};
+      const double middle = (volume.alpha[0] + volume.alpha[1]) / 2, turn = 2 * std::numbers::pi;
+      if (!Within(p[0], volume.alpha)) p[0] -= turn * std::round((p[0] - middle) / turn);
+      readings.push_back(p);
+    }
+  };
+  PointRequest typed = points;
+  typed.file.clear();
+  const bool any_typed = points.typed.find_first_not_of("; ") != std::string::npos;
+  if (any_typed || points.file.empty()) {
+    SCANCAL_ASSIGN_OR_RETURN(auto read, ReadPoints(typed, {angle, y, z}));
+    add(std::move(read), true, false);
+  }
+  if (points.file.empty()) return readings;
+  PointRequest file = points;
+  file.typed.clear();
+  auto read = ReadPoints(file, {angle, y, z});
+  bool is_reading = true, is_lidar = false;
+  if (!read.ok() && read.error().kind == ErrorKind::kMissingColumns) {
+    if (auto lidar = ReadPoints(file, {angle, bearing, range}); lidar.ok()) {
+      read = std::move(lidar);
+      is_lidar = true;
+    } else if (auto written = ReadPoints(file, {alpha, y, z});
+               written.ok() || written.error().kind != ErrorKind::kMissingColumns) {
+      read = std::move(written);
+      is_reading = false;
+    }
+  }
+  if (!read.ok()) return read.error();
+  add(*std::move(read), is_reading, is_lidar);
+  return readings;
+}
+
+}  // namespace
+
 Result<Propagation> Propagate(const Calibration& calibration, const PointRequest& points, bool distances) {
   SCANCAL_ASSIGN_OR_RETURN(const PointUncertainty uncertainty, PointUncertainty::From(calibration));
-  SCANCAL_ASSIGN_OR_RETURN(
-      const auto readings,
-      ReadPoints(points, {{"alpha", Dimension::kAngle}, {"y", Dimension::kLength}, {"z", Dimension::kLength}}));
+  SCANCAL_ASSIGN_OR_RETURN(const auto readings, Readings(points, uncertainty.volume()));
   Propagation result;
   result.reading = {"alpha", "y", "z"};
   result.units = {Unit::kRad, Unit::kMm, Unit::kMm};
@@ -223,12 +268,13 @@ Result<Propagation> Propagate(const Calibration& calibration, const PointRequest
 Result<int64_t> Transform(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud) {
   SCANCAL_ASSIGN_OR_RETURN(const System system, SystemOf(calibration));
   Model model(Model::Residuals::kDepth);
-  SCANCAL_ASSIGN_OR_RETURN(const Declaration declaration, Declare(dataset, &model));
-  std::set<std::filesystem::path> done;  // several targets may be regions of one scan, which is written whole, once
+  SCANCAL_ASSIGN_OR_RETURN(const Declaration declaration, Declare(dataset, &model, /*searches=*/false));
+  std::set<std::pair<std::filesystem::path, decltype(TextFormat::where)>>
+      done;  // several targets may be regions of one scan, which is written whole, once
   int64_t points = 0;
   int number = 0;
   for (ScanDeclaration scan : declaration.scans) {
-    if (!done.insert(scan.format.path.lexically_normal()).second) continue;
+    if (!done.insert({scan.format.path.lexically_normal(), scan.format.text.where}).second) continue;
     scan.format.lines.reset();
     SCANCAL_ASSIGN_OR_RETURN(const auto reader, ScanReader::Open(scan.format));
     Progress progress("transforming " + scan.scan);

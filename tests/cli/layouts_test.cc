@@ -162,5 +162,68 @@ TEST_F(LayoutsTest, CommentsAreSkipped) {
   ExpectSameResult(Refined(data_));
 }
 
+// An instrument's own file: metadata, semicolons, decimal commas, units in brackets, counts of an encoder.
+TEST_F(LayoutsTest, AnInstrumentsOwnFile) {
+  for (const std::string& name : kNames) {
+    std::string text = "LINE SCANNER 3000\r\nSerial;4711\r\nDate;2026-11-02\r\n\r\nEncoder;Depth [mm];Line [mm]\r\n";
+    for (const ScanPoint& p : ReadPoints(data_ / (name + ".csv"))) {
+      char row[99];
+      const double count = std::fmod(1200 + p.angle / 360 * 3.6e9 + 2 * 4e7, 4e7);
+      std::snprintf(row, sizeof row, "%.6f;%.17g;%.17g\r\n", count, p.y, p.z);
+      for (char* c = row; *c; ++c) *c = *c == '.' ? ',' : *c;
+      text += row;
+    }
+    WriteWhole(data_ / (name + ".csv"), text);
+  }
+  Append(data_ / "dataset.yaml",
+         "columns: {y: Depth, z: Line}\nangle: {column: Encoder, counts_per_turn: 3.6e9, zero: 1200, wrap: 4e7}\n");
+  ExpectSameResult(Refined(data_), 1e-4);
+  const Outcome outcome = Refine(data_);
+  EXPECT_THAT(outcome.out, HasSubstr("Text: cells between semicolons, decimal commas, names in line 5, angle from "
+                                     "Encoder, 3.6e+09 counts a turn, zero at 1200, starting again after 40000000."));
+}
+
+TEST_F(LayoutsTest, AConstantStep) {
+  for (const std::string& name : kNames) {
+    std::vector<std::vector<double>> rows;
+    const auto profiles = Profiles(ReadPoints(data_ / (name + ".csv")));
+    for (size_t k = 0; k < profiles.size(); ++k)
+      for (const ScanPoint& p : profiles[k]) rows.push_back({static_cast<double>(k + 7), p.y, p.z});
+    WriteTable(data_ / (name + ".csv"), "profile,y,z", rows);
+  }
+  const std::string yaml = ReadWhole(data_ / "dataset.yaml");
+  Append(data_ / "dataset.yaml", "angle: {start: -15, step: 0.76923076923076927}\n");
+  ExpectSameResult(Refined(data_), 1e-3);
+  WriteWhole(data_ / "dataset.yaml", yaml + "angle: {column: profile, speed: 0.76923076923076927, zero: 26.5}\n");
+  ExpectSameResult(Refined(data_), 1e-3);
+}
+
+TEST_F(LayoutsTest, WhereOneFileHoldsAll) {
+  std::string all = "Plate,angle,y,z\n";
+  for (const std::string& name : kNames)
+    for (const std::string& line : Lines(ReadWhole(data_ / (name + ".csv"))))
+      if (line != "angle,y,z") all += "the " + name + " one," + line + "\n";
+  for (const std::string& name : kNames) {
+    fs::remove(data_ / (name + ".csv"));
+    Replace(data_ / "dataset.yaml", "scan: " + name + ".csv", "scan: all.csv, where: {Plate: the " + name + " one}");
+  }
+  WriteWhole(data_ / "all.csv", all);
+  ExpectSameResult(Refined(data_));
+}
+
+TEST_F(LayoutsTest, SearchIsAskedOnlyWhereSomethingIsSearched) {
+  const std::string yaml = ReadWhole(data_ / "dataset.yaml");
+  const size_t at = yaml.find("search:"), end = yaml.find('\n', at) + 1;
+  WriteWhole(data_ / "dataset.yaml", yaml.substr(0, at) + yaml.substr(end));
+  const fs::path calibration = Path("out") / "calibration.json";
+  EXPECT_EQ(RunScancal({"transform", data_.string(), "--calibration=" + calibration.string(),
+                        "--out=" + Path("cloud.csv").string()})
+                .exit_code,
+            0);
+  EXPECT_THAT(OneSentence(Refine(data_)), HasSubstr("the key 'search' is missing"));
+  Append(data_ / "dataset.yaml", "parameters: {M: {hold: 123}, N: {hold: 409}, tilt_x: estimate}\n");
+  EXPECT_NE(Refine(data_).exit_code, 1);
+}
+
 }  // namespace
 }  // namespace scancal

@@ -1,5 +1,6 @@
 // scancal propagate: points and distances with their uncertainty.
 #include <gmock/gmock.h>
+#include <array>
 #include <cmath>
 #include "io/units.h"
 #include "tests/cli/data_set.h"
@@ -106,6 +107,37 @@ TEST_F(PropagateTest, DistancesAreFromEachPointToTheNext) {
   EXPECT_GT(CellOf(table, 3, "distance_mm"), 80);
 }
 
+// What a scan has: columns of that name, of a lidar, and the angle as the encoder shows it.
+TEST_F(PropagateTest, ReadingsAreThoseOfAScan) {
+  const auto position = [&](const std::vector<std::string>& flags) {
+    std::vector<std::string> all = flags;
+    all.push_back("--out=" + Path("p.csv").string());
+    const Outcome outcome = Propagate(all);
+    EXPECT_EQ(outcome.exit_code, 0) << ::testing::PrintToString(outcome);
+    EXPECT_EQ(outcome.err, "");
+    const auto table = Cells(Path("p.csv"));
+    return std::array{CellOf(table, 1, "X_mm"), CellOf(table, 1, "Y_mm"), CellOf(table, 1, "Z_mm")};
+  };
+  const auto expect_near = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], 1e-9);
+  };
+  const auto expected = position({"--point=-10,50,-20"});
+  expect_near(position({"--point=350,50,-20"}), expected);  // the same place
+  WriteWhole(Path("points.csv"), "Angle [deg];Y [mm];Z [mm]\n-10;50;-20\n");
+  expect_near(position({"--points_file=" + Path("points.csv").string()}), expected);
+  char lidar[99];
+  std::snprintf(lidar, sizeof lidar, "angle,bearing_rad,range\n-10,%.17g,%.17g\n", std::atan2(-20, 50),
+                std::hypot(50, 20));
+  WriteWhole(Path("points.csv"), lidar);
+  expect_near(position({"--points_file=" + Path("points.csv").string()}), expected);
+  Replace(data_ / "dataset.yaml", "rotation: clockwise", "rotation: counterclockwise");
+  const Json other = Refined(data_);
+  const double c = std::cos(10 * kDegree), s = std::sin(10 * kDegree), m = ValueOf(other, "M"), n = ValueOf(other, "N");
+  const auto turned = position({"--point=-10,50,-20"});  // clockwise by 10 degrees
+  EXPECT_NEAR(turned[0], m * c - (n + 50) * s, 1e-9);
+  EXPECT_NEAR(turned[1], -m * s - (n + 50) * c, 1e-9);
+}
+
 TEST_F(PropagateTest, PointsThatWereNotScannedAreWarnedOf) {
   const Outcome outcome = Propagate({"--point=80,50,0"});
   EXPECT_EQ(outcome.exit_code, 0) << ::testing::PrintToString(outcome);
@@ -115,12 +147,12 @@ TEST_F(PropagateTest, PointsThatWereNotScannedAreWarnedOf) {
 
 TEST_F(PropagateTest, WrongInputIsRefused) {
   EXPECT_THAT(Refusal({}), HasSubstr("no points: "));
-  EXPECT_THAT(Refusal({"--point=1,2"}), HasSubstr("point \"1,2\": found 2 values, expected 3: alpha, y, z"));
+  EXPECT_THAT(Refusal({"--point=1,2"}), HasSubstr("point \"1,2\": found 2 values, expected 3: angle, y, z"));
   EXPECT_THAT(Refusal({"--point=1,2,3", "--point=1,2,up"}), HasSubstr("z: found \"up\""));
   EXPECT_THAT(Refusal({"--point=1,2,3", "--units=inch,deg"}), HasSubstr("found \"inch,deg\""));
-  WriteWhole(Path("points.csv"), "angle,y,z\n1,2,3\n");
+  WriteWhole(Path("points.csv"), "angle,x,z\n1,2,3\n");
   const std::string file = "--points_file=" + Path("points.csv").string();
-  EXPECT_THAT(Refusal({file}), AllOf(HasSubstr("points.csv:1: found the columns angle, y, z"), HasSubstr("'alpha'")));
+  EXPECT_THAT(Refusal({file}), AllOf(HasSubstr("points.csv:1: found the columns angle, x, z"), HasSubstr("'y'")));
   WriteWhole(Path("points.csv"), "");
   EXPECT_THAT(Refusal({file}), HasSubstr("points.csv: no points"));
   EXPECT_THAT(Refusal({"--point=1,2,3", "second.json"}), HasSubstr("found 2 arguments, expected one"));

@@ -1,0 +1,123 @@
+// Angles as a controller logs them: counts of an encoder, a time at constant speed, or none but a constant step.
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <utility>
+#include "io/scan.h"
+
+namespace scancal {
+namespace {
+
+std::string Plainly(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", number);
+  return text;
+}
+
+class LoggedAngleReader : public ScanReader {
+ public:
+  LoggedAngleReader(LoggedAngle angle, std::unique_ptr<ScanReader> file)
+      : angle_(std::move(angle)), file_(std::move(file)) {}
+  int64_t bytes_read() const override { return file_->bytes_read(); }
+  int64_t bytes_total() const override { return file_->bytes_total(); }
+  std::string Describe() const override {
+    const std::string text = file_->Describe();
+    return text + (text.empty() ? "" : ", ") + angle_.echo;
+  }
+
+  Result<bool> Next(ScanBatch* batch) override {
+    SCANCAL_ASSIGN_OR_RETURN(const bool more, file_->Next(batch));
+    missing_ = file_->missing();
+    if (angle_.is_step) return more && (CountProfiles(batch), true);
+    if (const int column = batch->Find("angle"); more && column >= 0)
+      for (double& count : batch->columns[static_cast<size_t>(column)])
+        count = (Unwound(count) - angle_.zero) * angle_.rad_per_count;
+    return more;
+  }
+
+ private:
+  // A counter that starts again leaps by most of its range.
+  double Unwound(double count) {
+    if (angle_.wrap > 0) {
+      const double leap = count + turns_ * angle_.wrap - last_;
+      if (any_ && std::abs(leap) > angle_.wrap / 2) turns_ -= std::round(leap / angle_.wrap);
+      count += turns_ * angle_.wrap;
+    }
+    last_ = count;
+    any_ = true;
+    return count;
+  }
+
+  void CountProfiles(ScanBatch* batch) {
+    const std::vector<double> profiles = batch->columns[static_cast<size_t>(batch->Find("profile"))];
+    if (!profiles.empty() && !std::exchange(any_, true)) last_ = profiles.front();
+    int column = batch->Find("angle");
+    if (column < 0) {
+      column = static_cast<int>(batch->names.size());
+      batch->names.emplace_back("angle");
+      batch->columns.emplace_back();
+    }
+    std::vector<double>& angles = batch->columns[static_cast<size_t>(column)];
+    angles = profiles;
+    for (double& angle : angles) angle = angle_.start + (angle - last_) * angle_.rad_per_count;
+  }
+
+  LoggedAngle angle_;
+  std::unique_ptr<ScanReader> file_;
+  double last_ = 0, turns_ = 0;  // of the counter; the first profile
+  bool any_ = false;
+};
+
+}  // namespace
+
+LoggedAngle ReadLoggedAngle(YamlMap map, const Units& units) {
+  LoggedAngle angle;
+  const double unit = units.angle_in_rad;
+  angle.is_step = map.Has("step");
+  if (angle.is_step) {
+    angle.start = map.Number("start", 0) * unit;
+    angle.rad_per_count = map.Number("step") * unit;
+    if (angle.rad_per_count == 0) map.Fail("step", "expected the angle from one profile to the next, not 0");
+    angle.echo = "angle " + Plainly(angle.start / unit) + " " + units.angle + " in the first profile, then " +
+                 Plainly(angle.rad_per_count / unit) + " more a profile";
+    return angle;
+  }
+  angle.column = map.Text("column", "angle");
+  angle.zero = map.Number("zero", 0);
+  angle.wrap = map.Number("wrap", 0);
+  if (angle.wrap < 0) map.Fail("wrap", "expected how many counts the counter has before it starts again");
+  if (map.Has("counts_per_turn") == map.Has("speed"))
+    map.Fail("", "expected counts_per_turn, speed, or start and step");
+  const char* const key = map.Has("speed") ? "speed" : "counts_per_turn";
+  const double number = map.Number(key, 1);
+  if (number == 0) map.Fail(key, "expected a number that is not 0");
+  angle.rad_per_count = map.Has("speed") ? number * unit : 2 * std::numbers::pi / number;
+  angle.echo = "angle from " + angle.column + ", " + Plainly(number) +
+               (map.Has("speed") ? " " + units.angle + " a unit of it" : " counts a turn");
+  if (angle.zero != 0) angle.echo += ", zero at " + Plainly(angle.zero);
+  if (angle.wrap != 0) angle.echo += ", starting again after " + Plainly(angle.wrap);
+  return angle;
+}
+
+Result<std::unique_ptr<ScanReader>> OpenLogged(const ScanFormat& format) {
+  ScanFormat file = format;
+  const LoggedAngle angle = *std::exchange(file.angle, std::nullopt);
+  for (ScanColumn& column : file.columns) {
+    if (column.name == "angle") column.dimension = Dimension::kNone;
+    if (angle.is_step && column.name == "angle") column.required = false;
+    if (angle.is_step && column.name == "profile") {
+      column.required = true;
+      column.remedy = "; it counts the profiles, from which angle: step makes angles";
+    }
+  }
+  if (!angle.is_step) {
+    file.names["angle"] = angle.column;
+  } else {
+    std::erase_if(file.columns, [](const ScanColumn& column) { return column.name == "angle"; });
+    if (file.layout) file.layout->angle_column = 0;
+  }
+  SCANCAL_ASSIGN_OR_RETURN(std::unique_ptr<ScanReader> reader, ScanReader::Open(file));
+  return std::unique_ptr<ScanReader>(std::make_unique<LoggedAngleReader>(angle, std::move(reader)));
+}
+
+}  // namespace scancal
