@@ -156,7 +156,7 @@ Result<TextHead> DelimitedText::TakeHead(const TextFormat& declared, const Colum
     const auto is_text = [](const std::string& name) { return ParseNumber(name).kind == NumberKind::kText; };
     const bool named = nameless->exactly && numbers.names.size() == nameless->cells &&
                        std::all_of(numbers.names.begin(), numbers.names.end(), is_text);
-    if (named) numbers = TextHead{.dialect = numbers.dialect};
+    if (named) numbers = {};
     if (numbers.is_known || !match) head = std::move(numbers);
     head.is_nameless = head.is_known;
   }
