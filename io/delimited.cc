@@ -291,50 +291,52 @@ Result<bool> DelimitedText::Next() {
     }
     line_start_ = at;
     ++line_;
-    if (IsUnwanted()) {
+    if (!where_.empty() && IsUnwanted()) {
       text_.SkipTo(Line().end() + 1);
       continue;
     }
-    SCANCAL_ASSIGN_OR_RETURN(const char* const row_end, TakeCells(at));
-    if (row_end != nullptr) {
+    const Column* wrong = nullptr;
+    if (const char* const row_end = TakeCells(at, &wrong)) {
       text_.SkipTo(row_end + 1);
       return true;
     }
+    if (!IsHeadAgain()) return Wrong(wrong);
     text_.SkipTo(Line().end() + 1);
   }
 }
 
-// Of the row that begins there; returns its '\n', or nullptr where the names stand again.
-Result<const char*> DelimitedText::TakeCells(const char* at) {
+// Of the row that begins there; returns its '\n'. nullptr: one of them is wrong, or if none is their number.
+inline const char* DelimitedText::TakeCells(const char* at, const Column** wrong) {
   const char* const end = text_.end();
   Column* column = columns_.data();
   for (;; ++column, ++at) {
     column->start = at;
     if (column->cells >= Cells::kNumber) {
       at = ReadCell(at, end, column->cells, column->parser, &column->number);
-      if (at == nullptr) return WrongUnlessNames(column);
+      if (at == nullptr) {
+        *wrong = column;
+        return nullptr;
+      }
     } else {
       if (column->cells != Cells::kIgnored) at = SkipBlanks(at);
       const char* const start = at;
       at = SkipCell(start);
       // Any other first character stands for itself.
       const bool may_be_empty = column->cells == Cells::kText && *start <= ',';
-      if (may_be_empty && CellText({start, at}).empty()) return Wrong(column);
+      if (may_be_empty && CellText({start, at}).empty()) {
+        *wrong = column;
+        return nullptr;
+      }
     }
     if (*at != column->behind) {
       if (*at == ',' && count_ != CellCount::kAny) at = SkipEmptyCells(at);
-      if (*at != column->behind && count_ != CellCount::kAny) return WrongUnlessNames(nullptr);
+      if (*at != column->behind && count_ != CellCount::kAny) return nullptr;
       if (*at == ',') column = AddColumn();
     }
     if (*at == '\n') break;
   }
   cells_ = static_cast<size_t>(column - columns_.data()) + 1;
   return at;
-}
-
-Result<const char*> DelimitedText::WrongUnlessNames(const Column* column) {
-  if (IsHeadAgain()) return nullptr;
-  return Wrong(column);
 }
 
 std::string DelimitedText::Text(size_t column) const {

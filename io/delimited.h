@@ -124,8 +124,7 @@ class DelimitedText {
   Error Wrong(const Column* column);
   std::vector<std::string_view> FirstLines() const;
   void TakeLines(const TextHead& head);
-  Result<const char*> TakeCells(const char* at);
-  Result<const char*> WrongUnlessNames(const Column* column);
+  const char* TakeCells(const char* at, const Column** wrong);
   bool IsUnwanted() const;
   bool IsHeadAgain() const;
   const char* ReadCell(const char* at, const char* end, Cells cells, ColumnParser& parser, double* number) const;
