@@ -50,7 +50,8 @@ class LoggedAngleReader : public ScanReader {
 
   void CountProfiles(ScanBatch* batch) {
     const std::vector<double> profiles = batch->columns[static_cast<size_t>(batch->Find("profile"))];
-    if (!profiles.empty() && !std::exchange(any_, true)) last_ = profiles.front();
+    if (!profiles.empty() && !std::exchange(any_, true))
+      last_ = angle_.first.value_or(file_->FirstProfile().value_or(profiles.front()));
     int column = batch->Find("angle");
     if (column < 0) {
       column = static_cast<int>(batch->names.size());
@@ -77,6 +78,7 @@ LoggedAngle ReadLoggedAngle(YamlMap map, const Units& units) {
   if (angle.is_step) {
     angle.start = map.Number("start", 0) * unit;
     angle.rad_per_count = map.Number("step") * unit;
+    if (map.Has("first")) angle.first = map.Number("first");
     if (angle.rad_per_count == 0) map.Fail("step", "expected the angle from one profile to the next, not 0");
     angle.echo = "angle " + Plainly(angle.start / unit) + " " + units.angle + " in the first profile, then " +
                  Plainly(angle.rad_per_count / unit) + " more a profile";
@@ -114,7 +116,8 @@ Result<std::unique_ptr<ScanReader>> OpenLogged(const ScanFormat& format) {
     file.names["angle"] = angle.column;
   } else {
     std::erase_if(file.columns, [](const ScanColumn& column) { return column.name == "angle"; });
-    if (file.layout) file.layout->angle_column = 0;
+    file.wants_angles_from_steps = true;
+    if (file.layout && !file.layout->tall) file.layout->angle_column = 0;
   }
   SCANCAL_ASSIGN_OR_RETURN(std::unique_ptr<ScanReader> reader, ScanReader::Open(file));
   return std::unique_ptr<ScanReader>(std::make_unique<LoggedAngleReader>(angle, std::move(reader)));

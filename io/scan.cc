@@ -171,8 +171,7 @@ void ReadFormat(YamlMap map, ScanFormat* format) {
     for (const std::string& text : map.Texts("invalid")) {
       const ParsedNumber number = ParseNumber(text);
       if (number.kind != NumberKind::kNumber) format->text.missing.push_back(text);
-      else if (format->invalid && *format->invalid != number.value)
-        map.Fail("invalid", "expected one number, and any texts besides");
+      else if (format->invalid) format->more_invalid.push_back(number.value);
       else format->invalid = number.value;
     }
   } else if (map.Has("invalid")) {

@@ -24,12 +24,14 @@ struct ScanColumn {
   std::string remedy = {};  // behind the complaint that a required one is missing: "; ..."
 };
 
-struct WideLayout {            // one profile per line
-  std::string value;           // what the cells hold: "y" | "range"
-  std::string across;          // what runs along the line: "z" (with y) | "bearing" (with range)
-  int angle_column = 1;        // 1-based
-  int first_column = 2;        // first cell, 1-based
-  double start = 0, step = 1;  // of `across`, declared unit
+struct WideLayout {              // one profile per line; tall: one per column
+  std::string value;             // what the cells hold: "y" | "range"
+  std::string across;            // what runs along the line: "z" (with y) | "bearing" (with range)
+  int angle_column = 1;          // 1-based
+  int first_column = 2;          // first cell, 1-based
+  double start = 0, step = 1;    // of `across`, declared unit
+  bool tall = false;             // angle_column has `across` instead, and angles come from LoggedAngle
+  double scale = 1, offset = 0;  // a cell's number times this and plus that is in the declared unit
 };
 
 // How a file says the angle of a profile where no column has it.
@@ -40,6 +42,7 @@ struct LoggedAngle {
   double wrap = 0;               // counts after which the counter starts again; 0: it does not
   bool is_step = false;          // no column: the first profile is at `start`, the others follow by their number
   double start = 0;              // rad
+  std::optional<double> first;   // the number of the profile at `start`; none: the first in the file
   std::string echo;              // what was declared, in words
 };
 
@@ -51,8 +54,10 @@ struct ScanFormat {  // how one scan file is to be read, as the data set declare
   std::vector<std::string> npy_columns;          // names of the columns of a .npy, or of a text without names
   std::map<std::string, std::string> names;      // what the file calls a wanted column: {"angle", "Encoder"}
   std::optional<LoggedAngle> angle;              // in place of a column with angles
+  bool wants_angles_from_steps = false;          // set by OpenLogged, of the file behind it
   TextFormat text;                               // of text: what is declared of its dialect
   std::optional<double> invalid;                 // this value, as it stands in the file, is a missing point
+  std::vector<double> more_invalid;              // and these
   std::optional<WideLayout> layout;
   std::optional<std::pair<int64_t, int64_t>>
       lines;  // keep only these lines of the file (rows of a .npy), 1-based, inclusive
@@ -80,6 +85,8 @@ class ScanReader {
   virtual Result<bool> Next(ScanBatch* batch) = 0;
   virtual int64_t bytes_read() const = 0;  // so far, for a progress bar
   virtual int64_t bytes_total() const = 0;
+  // Of the first profile in the file, with points or without; none: it cannot be told.
+  virtual std::optional<double> FirstProfile() const { return std::nullopt; }
   virtual std::string Describe() const { return ""; }  // what was found of the file's dialect; empty: a plain file
   int64_t missing() const { return missing_; }         // so far
 

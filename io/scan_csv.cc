@@ -39,7 +39,24 @@ class CsvReader : public ScanReader {
     if (format_.lines) text_.KeepLines(format_.lines->first, format_.lines->second);
   }
   // Neither below nor above it: equal, or nan.
-  bool IsMissing(double number) const { return !std::islessgreater(number, invalid_); }
+  bool IsMissing(double number) const {
+    return !std::islessgreater(number, invalid_) ||
+           (!format_.more_invalid.empty() &&
+            std::count(format_.more_invalid.begin(), format_.more_invalid.end(), number));
+  }
+  Result<void> KeepWhere(const std::vector<std::string>& header) {
+    std::vector<std::pair<size_t, std::string>> where;
+    for (const auto& [name, value] : format_.text.where) {
+      ScanFormat only;
+      only.columns = {{name, Dimension::kNone}};
+      const auto column = ChooseColumns(only, header, text_.Place() + ": where");
+      if (!column.ok()) return column.error();
+      where.emplace_back(column->front().index, value);
+    }
+    text_.KeepWhere(std::move(where));
+    return {};
+  }
+
   // There were points, or none at all at the end of the file is an error.
   Result<bool> Taken(size_t points) {
     any_point_ |= points > 0;
@@ -91,19 +108,6 @@ class LongReader : public CsvReader {
     return {};
   }
 
-  Result<void> KeepWhere(const std::vector<std::string>& header) {
-    std::vector<std::pair<size_t, std::string>> where;
-    for (const auto& [name, value] : format_.text.where) {
-      ScanFormat only;
-      only.columns = {{name, Dimension::kNone}};
-      const auto column = ChooseColumns(only, header, text_.Place() + ": where");
-      if (!column.ok()) return column.error();
-      where.emplace_back(column->front().index, value);
-    }
-    text_.KeepWhere(std::move(where));
-    return {};
-  }
-
   Result<bool> Next(ScanBatch* batch) override {
     batch->names.clear();
     for (const ChosenColumn& column : columns_) batch->names.push_back(column.name);
@@ -134,30 +138,38 @@ class LongReader : public CsvReader {
   std::vector<ChosenColumn> columns_;
 };
 
-// A profile per line.
+// A profile per line, or per column.
 class WideReader : public CsvReader {
  public:
   WideReader(const ScanFormat& format, DelimitedText text)
       : CsvReader(format, std::move(text)),
         layout_(*format.layout),
-        has_angle_(layout_.angle_column > 0),
+        has_angle_(layout_.angle_column > 0 && !layout_.tall),
         angle_(static_cast<size_t>(std::max(layout_.angle_column, 1) - 1)),
         first_(static_cast<size_t>(layout_.first_column - 1)),
         angle_factor_(format.units.Of(ColumnOf("angle").dimension)),
         across_factor_(format.units.Of(ColumnOf(layout_.across).dimension)),
         value_factor_(format.units.Of(ColumnOf(layout_.value).dimension)) {}
 
+  std::optional<double> FirstProfile() const override { return first_profile_; }
+
   Result<void> ReadHeader() {
+    if (layout_.tall && !format_.wants_angles_from_steps)
+      return Error{text_.name() +
+                   ": layout: a file with a profile a column has no angles; add angle: {start: ..., step: ...}"};
     if (layout_.angle_column < 0 || layout_.angle_column >= layout_.first_column)
       return Error{text_.name() + ": layout: found angle_column: " + std::to_string(layout_.angle_column) +
                    ", first_column: " + std::to_string(layout_.first_column) +
                    ", expected the column of the angle, counted from 1, before the first cell"};
-    const NumberRows rows{first_ + 1, false, {has_angle_ ? angle_ : first_}};
+    const NumberRows rows{first_ + 1, false, {has_angle_ || layout_.tall ? angle_ : first_}};
     SCANCAL_ASSIGN_OR_RETURN(const TextHead head, text_.TakeHead(format_.text, nullptr, rows));
     SCANCAL_ASSIGN_OR_RETURN(std::string_view row, text_.Peek());
     const std::vector<std::string> header = head.is_known ? head.names : SplitCells(row);
+    SCANCAL_RETURN_IF_ERROR(KeepWhere(header));
     if (IsHeader(header)) {  // units in names ("angle_rad", "y_um") win
       const Units& units = format_.units;
+      if (layout_.tall)
+        across_factor_ = MatchColumn(ColumnOf(layout_.across), header[angle_], units).value_or(across_factor_);
       angle_factor_ = MatchColumn(ColumnOf("angle"), header[angle_], units).value_or(angle_factor_);
       if (first_ < header.size())
         value_factor_ = MatchColumn(ColumnOf(layout_.value), header[first_], units).value_or(value_factor_);
@@ -169,7 +181,8 @@ class WideReader : public CsvReader {
     // Up to the first cell, or as many as this row can have: if that is fewer it is refused.
     std::vector<ExpectedCells> cells(std::min(first_, row.size()) + 1);
     cells.back() = {Cells::kNumberOrNothing, layout_.value};
-    if (has_angle_ && angle_ < cells.size()) cells[angle_] = {Cells::kNumberOrNothing, "angle"};
+    if ((has_angle_ || layout_.tall) && angle_ < cells.size())
+      cells[angle_] = {Cells::kNumberOrNothing, layout_.tall ? layout_.across : "angle"};
     text_.Expect(std::move(cells), {}, CellCount::kAny);
     return {};
   }
@@ -190,13 +203,16 @@ class WideReader : public CsvReader {
         targets[i] = batch->columns[i].data();
       }
       const double angle = has_angle_ ? text_.Number(angle_) : 0, profile = static_cast<double>(text_.line());
-      const bool no_angle = IsMissing(angle);
+      const double across = layout_.tall ? text_.Number(angle_) : 0;
+      const bool no_angle = IsMissing(angle) || IsMissing(across);
+      if (!first_profile_) first_profile_ = layout_.tall ? 1 : profile;
       for (size_t k = first_; k < cells_; ++k) {
         const double value = text_.Number(k);
         targets[0][points] = angle * angle_factor_;
-        targets[1][points] = (layout_.start + layout_.step * static_cast<double>(k - first_)) * across_factor_;
-        targets[2][points] = value * value_factor_;
-        targets[3][points] = profile;
+        const auto number = static_cast<double>(k - first_);
+        targets[1][points] = (layout_.tall ? across : layout_.start + layout_.step * number) * across_factor_;
+        targets[2][points] = (layout_.scale * value + layout_.offset) * value_factor_;
+        targets[3][points] = layout_.tall ? 1 + number : profile;
         if (!no_angle && !IsMissing(value)) ++points;
       }
       missing_ += static_cast<int64_t>(most - points);
@@ -235,6 +251,7 @@ class WideReader : public CsvReader {
 
   const WideLayout layout_;
   bool has_angle_;
+  std::optional<double> first_profile_;
   size_t angle_, first_;  // columns, 0-based
   double angle_factor_, across_factor_, value_factor_;
   size_t cells_ = 0;  // of every row

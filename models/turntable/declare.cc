@@ -33,8 +33,10 @@ std::optional<WideLayout> ReadLayout(YamlMap map) {
   if (!map.Has("layout")) return std::nullopt;
   YamlMap layout = map.Map("layout");
   WideLayout wide;
-  wide.value = layout.Text("wide");
-  if (wide.value != "y" && wide.value != "range") layout.Fail("wide", "expected y or range");
+  wide.tall = layout.Has("tall");
+  const char* const kind = wide.tall ? "tall" : "wide";
+  wide.value = layout.Text(kind);
+  if (wide.value != "y" && wide.value != "range") layout.Fail(kind, "expected y or range");
   wide.across = wide.value == "range" ? "bearing" : "z";
   const auto column = [&](const char* key, int otherwise) {
     const double number = layout.Number(key, otherwise);
@@ -42,8 +44,12 @@ std::optional<WideLayout> ReadLayout(YamlMap map) {
     layout.Fail(key, "expected a column number, 1 or more");
     return otherwise;
   };
-  wide.angle_column = column("angle_column", 1);
+  wide.angle_column = column(wide.tall ? "across_column" : "angle_column", 1);
   wide.first_column = column("first_column", 2);
+  wide.scale = layout.Number("scale", 1);
+  wide.offset = layout.Number("offset", 0);
+  if (wide.scale == 0) layout.Fail("scale", "expected what a cell's number is to be multiplied by, not 0");
+  if (wide.tall) return wide;
   wide.start = layout.Number("start");
   wide.step = layout.Number("step");
   if (wide.step == 0) layout.Fail("step", "expected a step that is not zero");

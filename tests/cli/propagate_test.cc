@@ -131,6 +131,7 @@ TEST_F(PropagateTest, ReadingsAreThoseOfAScan) {
   WriteWhole(Path("points.csv"), lidar);
   expect_near(position({"--points_file=" + Path("points.csv").string()}), expected);
   Replace(data_ / "dataset.yaml", "rotation: clockwise", "rotation: counterclockwise");
+  Replace(data_ / "dataset.yaml", "M: [110, 130]", "M: [-130, -110]");  // its mirror image
   const Json other = Refined(data_);
   const double c = std::cos(10 * kDegree), s = std::sin(10 * kDegree), m = ValueOf(other, "M"), n = ValueOf(other, "N");
   const auto turned = position({"--point=-10,50,-20"});  // clockwise by 10 degrees

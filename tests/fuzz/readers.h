@@ -47,13 +47,15 @@ inline void ReadAsScan(std::string_view bytes) {
   const FileOf file(bytes.substr(1));
   ScanFormat format;
   format.path = file.path();
-  format.columns = {{"angle", Dimension::kAngle}, {"y", Dimension::kLength}, {"z", Dimension::kLength},
+  format.columns = {{"angle", Dimension::kAngle},
+                    {"y", Dimension::kLength},
+                    {"z", Dimension::kLength},
                     {"profile", Dimension::kNone, false}};
   if (choice & 1U) format.npy_columns = {"angle", "y", "z"};
   if (choice & 2U) format.layout = WideLayout{.value = "y", .across = "z"};
   if (choice & 4U) format.text.missing = {"no echo"};
   if (choice & 8U) format.text.where = {{"z", "1"}};
-  if (choice & 16U) format.angle = LoggedAngle{.wrap = 360, .is_step = (choice & 32U) != 0, .echo = {}};
+  if (choice & 16U) format.angle = LoggedAngle{.wrap = 360, .is_step = (choice & 32U) != 0, .first = {}, .echo = {}};
   if (choice & 64U) format.text.decimal = ',';
   if (choice & 128U) format.lines = {2, 5};
   ReadToItsEnd(format);

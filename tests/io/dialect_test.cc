@@ -254,6 +254,22 @@ TEST_F(DialectTest, AProfileALineInAnyDialect) {
                                         ElementsAre(3, 3, 4)));
 }
 
+// As a profiler's own program exports them: a profile a column, whole numbers of 0.01 um.
+TEST_F(DialectTest, AProfileAColumnInAnyDialect) {
+  ScanFormat format = Format("X\tP1\tP2\n-1,5\t-2147483648\t250000\n1,5\t-2147483645\t-100000\n");
+  format.layout = WideLayout{.value = "y", .across = "z", .tall = true, .scale = 1e-5};
+  format.invalid = -2147483648;
+  format.more_invalid = {-2147483645};
+  EXPECT_THAT(ReadAll(format).error, HasSubstr("has no angles; add angle: {start:"));
+  format.angle = LoggedAngle{.rad_per_count = 0.25, .is_step = true, .start = 2, .first = {}, .echo = {}};
+  const Scan scan = ReadAll(format);
+  EXPECT_THAT(scan.error, IsEmpty());
+  EXPECT_THAT(scan.names, ElementsAre("angle", "z", "y", "profile"));
+  EXPECT_THAT(scan.columns,
+              ElementsAre(ElementsAre(2.25, 2.25), ElementsAre(-1.5, 1.5), ElementsAre(2.5, -1), ElementsAre(2, 2)));
+  EXPECT_EQ(scan.missing, 2);
+}
+
 TEST_F(DialectTest, TablesOfTextToo) {
   const auto table = Table::Read(folder_.Write("balls.csv", "robot: R1\nPose;Ball;X [m]\nA 1;\"b;1,5\";0,25\n"),
                                  {{"pose"}, {"ball"}, {"x", Cells::kNumber, Dimension::kLength}}, {});
