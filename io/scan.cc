@@ -152,7 +152,7 @@ Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const 
   return chosen;
 }
 
-void ReadFormat(YamlMap map, ScanFormat* format) {
+void ReadFormat(YamlMap map, const std::filesystem::path& folder, ScanFormat* format) {
   if (map.IsMap("columns")) {
     YamlMap names = map.Map("columns");
     for (const std::string& name : names.Keys()) {
@@ -164,7 +164,7 @@ void ReadFormat(YamlMap map, ScanFormat* format) {
   } else if (map.Has("columns")) {
     format->npy_columns = map.Texts("columns");
   }
-  if (map.Has("angle")) format->angle = ReadLoggedAngle(map.Map("angle"), format->units);
+  if (map.Has("angle")) format->angle = ReadLoggedAngle(map.Map("angle"), folder, format->units);
   if (map.IsNumber("invalid")) {
     format->invalid = map.Number("invalid");
   } else if (map.IsList("invalid")) {

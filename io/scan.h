@@ -42,6 +42,8 @@ struct LoggedAngle {
   double wrap = 0;               // counts after which the counter starts again; 0: it does not
   bool is_step = false;          // no column: the first profile is at `start`, the others follow by their number
   double start = 0;              // rad
+  std::filesystem::path file;    // of its own, with `column` and `by`; empty: the scan's
+  std::string by;                // the column that both files have: a time stamp or a frame number
   std::optional<double> first;   // the number of the profile at `start`; none: the first in the file
   std::string echo;              // what was declared, in words
 };
@@ -71,7 +73,8 @@ struct ScanBatch {                           // equally long columns, in the ord
 };
 
 // What a data set, or a target of its own, says of its files: `columns`, `angle`, `invalid`, `text` and `where`.
-void ReadFormat(YamlMap map, ScanFormat* format);
+// folder: where a file of angles counts from.
+void ReadFormat(YamlMap map, const std::filesystem::path& folder, ScanFormat* format);
 
 // Delimited text in any dialect (FindHead), the same with a profile a line (layout), .npy (float64 | float32, C order,
 // shape (points, columns)); by layout, then extension. Missing points (empty, nan, `invalid` in a wanted column) are
@@ -101,7 +104,8 @@ Result<std::unique_ptr<ScanReader>> OpenWideCsv(const ScanFormat& format);
 Result<std::unique_ptr<ScanReader>> OpenNpy(const ScanFormat& format);
 // Any of them, with the angles of format.angle.
 Result<std::unique_ptr<ScanReader>> OpenLogged(const ScanFormat& format);
-LoggedAngle ReadLoggedAngle(YamlMap map, const Units& units);  // {column: Encoder, counts_per_turn: 36000, zero: 1200}
+LoggedAngle ReadLoggedAngle(YamlMap map, const std::filesystem::path& folder,
+                            const Units& units);  // {column: Encoder, counts_per_turn: 36000, zero: 1200}
 
 struct ChosenColumn {
   std::string name;   // as wanted: "y"

@@ -87,7 +87,7 @@ ScanDeclaration ReadTarget(YamlMap target, const YamlMap& top, const Dataset& da
   for (const auto& [name, dimension] : kColumns) scan.format.columns.push_back({name, dimension, name == "angle"});
   for (YamlMap map : {top, target}) {
     if (auto layout = ReadLayout(map)) scan.format.layout = layout;
-    ReadFormat(map, &scan.format);
+    ReadFormat(map, dataset.file.parent_path(), &scan.format);
   }
   ReadKeep(target, dataset.units, &scan);
   for (const KeepInterval& keep : scan.keep)

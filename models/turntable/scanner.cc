@@ -250,8 +250,13 @@ Result<std::unique_ptr<Scanner>> Compress(const Declaration& declaration, const 
 
 std::vector<std::filesystem::path> Scanner::Files() const {
   std::vector<std::filesystem::path> files = {declaration_.dataset.file};
-  for (const ScanDeclaration& scan : declaration_.scans)
-    if (std::find(files.begin(), files.end(), scan.format.path) == files.end()) files.push_back(scan.format.path);
+  const auto add = [&](const std::filesystem::path& file) {
+    if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  };
+  for (const ScanDeclaration& scan : declaration_.scans) {
+    add(scan.format.path);
+    if (scan.format.angle && !scan.format.angle->file.empty()) add(scan.format.angle->file);
+  }
   return files;
 }
 

@@ -198,6 +198,30 @@ TEST_F(LayoutsTest, AConstantStep) {
   ExpectSameResult(Refined(data_), 1e-3);
 }
 
+TEST_F(LayoutsTest, AnglesInAFileOfTheirOwn) {
+  std::string angles = "time;Angle [deg]\n";
+  for (const std::string& name : kNames) {
+    std::vector<std::vector<double>> rows;
+    const auto profiles = Profiles(ReadPoints(data_ / (name + ".csv")));
+    for (size_t k = 0; k < profiles.size(); ++k)
+      for (const ScanPoint& p : profiles[k]) rows.push_back({10.0 + static_cast<double>(k) / 4, p.y, p.z});
+    WriteTable(data_ / (name + ".csv"), "time,y,z", rows);
+    if (name != kNames[0]) continue;
+    for (const size_t k : {39, 0, 20, 10}) {  // the table turns evenly: fewer will do, in any order
+      char row[99];
+      std::snprintf(row, sizeof row, "%.17g;%.17g\n", 10.0 + static_cast<double>(k) / 4, profiles[k].front().angle);
+      angles += row;
+    }
+  }
+  WriteWhole(data_ / "angles of \"all\".csv", angles);
+  Append(data_ / "dataset.yaml", "angle: {file: 'angles of \"all\".csv', by: time}\n");
+  const Json result = Refined(data_);
+  ExpectSameResult(result, 1e-2);
+  EXPECT_EQ(result["inputs"].size(), 5U);
+  SetLine(data_ / "left.csv", 2, "9,70,0");
+  EXPECT_THAT(OneSentence(Refine(data_)), HasSubstr("time: found no angle at 9, but from 10 to 19.75"));
+}
+
 TEST_F(LayoutsTest, WhereOneFileHoldsAll) {
   std::string all = "Plate,angle,y,z\n";
   for (const std::string& name : kNames)

@@ -89,7 +89,7 @@ inline void ReadAsDeclaration(std::string_view bytes) {
   if (!dataset.ok()) return;
   ScanFormat format;
   format.columns = {{"angle", Dimension::kAngle}, {"y", Dimension::kLength}};
-  ReadFormat(dataset->yaml, &format);
+  ReadFormat(dataset->yaml, {}, &format);
   (void)dataset->yaml.Finish();
 }
 
