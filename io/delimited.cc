@@ -189,7 +189,7 @@ std::string DelimitedText::Describe() const {
   if (head_.names_line > 1 && head_.is_known && !head_.is_nameless)
     add("names in line " + std::to_string(head_.names_line));
   if (!head_.units.empty()) add("units in line " + std::to_string(head_.lines));
-  if (head_.is_nameless && head_.lines > 0) add("numbers from line " + std::to_string(head_.lines + 1) + " on");
+  if (head_.is_nameless && head_.lines > 1) add("numbers from line " + std::to_string(head_.lines + 1) + " on");
   return text;
 }
 
