@@ -139,9 +139,11 @@ Sentence Chance(double p) { return p < 1e-16 ? Sentence{"p < 1e-16"} : Say(kChan
 void JudgeTargets(const Solution& solution, double noise_dof, Calibration* result) {
   const std::vector<TargetTest> tests = TestTargets(solution.problem, solution.fit.estimate, solution.linear, noise_dof,
                                                     ScatterOfNeighbours(solution.problem, result->neighbours));
+  // A scalar stands for the correlation of neighbours: its tail is no F distribution's.
+  const double doubtful = result->neighbour_noise > 0 ? kContradiction : kSuspicious;
   size_t worst = 0, count = 0;
   for (size_t t = 0; t < tests.size(); ++t) {
-    count += tests[t].p < kSuspicious;
+    count += tests[t].p < doubtful;
     if (tests[t].p < tests[worst].p || (tests[t].p == tests[worst].p && tests[t].F > tests[worst].F)) worst = t;
   }
   if (count == 0) return;
@@ -235,7 +237,8 @@ void JudgeNeighbours(const Solution& solution, Calibration* result) {
   }
   // What is considered looks the same, and is in u.
   if (!solution.problem.With({Scope::kSystem, Scope::kTarget}, Role::kConsider).empty()) return;
-  if (!neighbours.IsSignificant()) return;
+  // Of data without noise rounding is left, which is no noise of neighbours.
+  if (!neighbours.IsSignificant() || result->sigma < kLeastSigma_mm) return;
   // The variance of the mean of a series whose correlation falls as rho^lag is (1 + rho) / (1 - rho) times that of an
   // independent one (Zhang, Metrologia 43, 2006, S276).
   constexpr double kFarTooSmall = 2;

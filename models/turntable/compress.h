@@ -66,7 +66,7 @@ struct RawScan {
   double copied = 0;                 // removed by DropCopies
   double lines = 0;                  // profiles that were read
   std::vector<Sentence> warnings;
-  std::string dialect;               // of its text, as it was found; empty: plain
+  std::string dialect;                       // of its text, as it was found; empty: plain
   bool timed = false;                        // a column says the time
   double step = 0;                           // in which depth (range) is written, mm; after DropCopies
   std::optional<bool> turned_within_angles;  // whether profiles at one angle were taken while it turned

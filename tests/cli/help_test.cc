@@ -70,10 +70,12 @@ TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
   EXPECT_THAT(HelpFlags("simulate"),
               UnorderedElementsAre("out", "M", "N", "tilt_x", "tilt_y", "scale_y", "scale_z", "shear", "linearity",
                                    "encoder_cos1", "encoder_sin1", "encoder_cos2", "encoder_sin2", "expansion",
-                                   "placements", "profiles", "points", "sweep", "line_length", "noise",
-                                   "line_correlation", "encoder_jitter", "form", "form_kind", "one_plate", "outliers",
-                                   "background", "declare", "missing", "search_width_M", "search_width_N", "seed",
-                                   "format", "model", "stations", "poses", "translations", "configuration",
+                                   "linearity_3", "lens_z2", "lens_yz", "lens_yz2", "range_offset", "range_scale",
+                                   "encoder_scale", "back", "drift_sweep", "drift", "angle_step", "profile_offset",
+                                   "profile_correlation", "placements", "profiles", "points", "sweep", "line_length",
+                                   "noise", "line_correlation", "encoder_jitter", "form", "form_kind", "one_plate",
+                                   "outliers", "background", "declare", "missing", "search_width_M", "search_width_N",
+                                   "seed", "format", "model", "stations", "poses", "translations", "configuration",
                                    "ball_noise", "repeatability", "u_artifact", "check_positions"));
 }
 

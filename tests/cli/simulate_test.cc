@@ -92,7 +92,7 @@ TEST_F(SimulateTest, TheSampleIsWhatItsSeedMakes) {
 TEST_F(SimulateTest, WhatWasSimulatedMayBeDeclared) {
   const fs::path data = Simulated({"--noise=0.04", "--encoder_jitter=0.002", "--form=0.005", "--declare"});
   EXPECT_THAT(ReadWhole(data / "dataset.yaml"),
-              HasSubstr("\ninfluences: {noise_y: 0.04, encoder_jitter: 0.002, form: 0.005}\n"));
+              HasSubstr("\ninfluences: {noise_y: 0.04, encoder_jitter: 0.002, form: 0.005, one_plate: no}\n"));
   EXPECT_NE(Refine(data).exit_code, 1);
   const fs::path none = Simulated({"--noise=0", "--declare"}, "none");
   EXPECT_THAT(ReadWhole(none / "dataset.yaml"), Not(HasSubstr("influences")));

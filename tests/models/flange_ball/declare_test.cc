@@ -125,7 +125,7 @@ TEST_F(FlangeBallDeclarationTest, WrongTablesAreTold) {
   EXPECT_THAT(ErrorOfTable("10,20\n30,1e9\n"), AllOf(HasSubstr("table.csv:2:4: q2"), HasSubstr("are these degrees?")));
   EXPECT_THAT(ErrorOfTable("1.5,2\n-1,0.3\n"), AllOf(HasSubstr("expected a robot that moves"), HasSubstr("radians")));
   EXPECT_THAT(ErrorOfTable("10,20\n30,40\n", {}), HasSubstr("if the file has no header, declare columns: [q1, q2, "));
-  EXPECT_THAT(ErrorOfTable("10;20\n30;40\n"), HasSubstr("semicolons"));
+  EXPECT_EQ(ErrorOfTable("10;20\n30;40\n"), "");  // in any dialect
   EXPECT_THAT(ErrorOfTable("10,20,5\n30,40,6\n", {"q1", "q2", "q3"}),
               HasSubstr("found the column q3, expected 2 joints"));
   EXPECT_EQ(ErrorOfTable("10,20\n30,40\n"), "");
