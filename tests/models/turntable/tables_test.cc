@@ -165,6 +165,7 @@ TEST(TurntableFigures, TheOrderOfProfilesAndTargetsDoesNotMatter) {
 TEST(TurntableFigures, NoProfileOneProfileAndOneAngleHaveTablesToo) {
   Model::Target target;
   Model::SetPlane({0, -1, 0}, 480, &target);
+  target.views.resize(2);  // as many as there are profiles, at rest
   std::vector<double> values(Model(Model::Residuals::kDepth).quantities().size());
   values[Model::kN] = 409;
   System system;
