@@ -135,16 +135,13 @@ void JudgeJackknife(const Solution& solution, const Jackknife& jackknife, double
 
 Sentence Chance(double p) { return p < 1e-16 ? Sentence{"p < 1e-16"} : Say(kChance, p); }
 
-// A scalar stands for the correlation of neighbours in these tests: their tail is no F distribution's.
-double Doubtful(const Calibration& result) { return result.neighbour_noise > 0 ? kContradiction : kSuspicious; }
-
 // The most significant of those that matter; the others say the same.
 void JudgeTargets(const Solution& solution, double noise_dof, Calibration* result) {
   const std::vector<TargetTest> tests = TestTargets(solution.problem, solution.fit.estimate, solution.linear, noise_dof,
                                                     ScatterOfNeighbours(solution.problem, result->neighbours));
   size_t worst = 0, count = 0;
   for (size_t t = 0; t < tests.size(); ++t) {
-    count += tests[t].p < Doubtful(*result);
+    count += tests[t].p < kSuspicious;
     if (tests[t].p < tests[worst].p || (tests[t].p == tests[worst].p && tests[t].F > tests[worst].F)) worst = t;
   }
   if (count == 0) return;
@@ -211,7 +208,7 @@ const MisfitTest* Likeliest(const std::vector<const MisfitTest*>& significant) {
 void JudgeMisfits(Calibration* result) {
   std::vector<const MisfitTest*> significant;
   for (const MisfitTest& misfit : result->misfits)
-    if (misfit.p < Doubtful(*result)) significant.push_back(&misfit);
+    if (misfit.p < kSuspicious) significant.push_back(&misfit);
   if (significant.empty()) return;
   const MisfitTest* strongest = Likeliest(significant);
   std::string others;
