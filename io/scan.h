@@ -84,7 +84,7 @@ class ScanReader {
  public:
   static Result<std::unique_ptr<ScanReader>> Open(const ScanFormat& format);
   virtual ~ScanReader() = default;
-  // Up to about 100,000 points; false, and none, at the end of the file.
+  // Some thousand points; false, and none, at the end of the file.
   virtual Result<bool> Next(ScanBatch* batch) = 0;
   virtual int64_t bytes_read() const = 0;  // so far, for a progress bar
   virtual int64_t bytes_total() const = 0;
@@ -94,7 +94,7 @@ class ScanReader {
   int64_t missing() const { return missing_; }         // so far
 
  protected:
-  static constexpr size_t kBatchPoints = 100'000;
+  static constexpr size_t kBatchPoints = 8192;  // stays in the cache
   int64_t missing_ = 0;
 };
 

@@ -251,8 +251,7 @@ Calibration Summarize(const Solution& solution, const PureError& pure_error) {
     result.neighbours = neighbours.correlation;
     for (const Quantity& quantity : solution.problem.quantities)
       result.neighbour_noise = std::max(result.neighbour_noise, quantity.neighbour);
-    result.misfits = TestMisfits(solution.problem, solution.fit.estimate, solution.linear, noise_dof,
-                                 ScatterOfNeighbours(solution.problem, neighbours.correlation));
+    result.misfits = TestMisfits(solution.problem, solution.fit.estimate, solution.linear, noise_dof);
   }
   for (Eigen::Index t = 0; t < jackknife.estimates.rows(); ++t)
     result.jackknife.push_back(Plain(jackknife.estimates.row(t).transpose()));

@@ -119,8 +119,7 @@ Sentence NotConverged(const Sentence& why, const std::map<std::string, double>& 
 
 void JudgeJackknife(const Solution& solution, const Jackknife& jackknife, double noise_dof, Calibration* result) {
   if (jackknife.estimates.rows() < 2 || noise_dof < 1) return;
-  const ExpectedJackknife expected = ExpectLeaveOneTargetOut(solution.problem, solution.fit.estimate, solution.linear,
-                                                             ScatterOfNeighbours(solution.problem, result->neighbours));
+  const ExpectedJackknife expected = ExpectLeaveOneTargetOut(solution.problem, solution.fit.estimate, solution.linear);
   for (size_t k = 0; k < result->estimated.size(); ++k) {
     const auto e = static_cast<Eigen::Index>(k);
     // What no target moves, because only its prior or a declaration holds it, is rounding over rounding.
@@ -137,8 +136,8 @@ Sentence Chance(double p) { return p < 1e-16 ? Sentence{"p < 1e-16"} : Say(kChan
 
 // The most significant of those that matter; the others say the same.
 void JudgeTargets(const Solution& solution, double noise_dof, Calibration* result) {
-  const std::vector<TargetTest> tests = TestTargets(solution.problem, solution.fit.estimate, solution.linear, noise_dof,
-                                                    ScatterOfNeighbours(solution.problem, result->neighbours));
+  const std::vector<TargetTest> tests =
+      TestTargets(solution.problem, solution.fit.estimate, solution.linear, noise_dof);
   size_t worst = 0, count = 0;
   for (size_t t = 0; t < tests.size(); ++t) {
     count += tests[t].p < kSuspicious;
@@ -229,8 +228,9 @@ void JudgeMisfits(Calibration* result) {
 void JudgeNeighbours(const Solution& solution, Calibration* result) {
   const Neighbours neighbours = CorrelationOfNeighbours(solution.problem, solution.fit.estimate, solution.linear);
   if (result->neighbour_noise > 0) {
-    result->notes.push_back(Say(kNeighboursCounted, result->neighbour_noise,
-                                std::sqrt(ScatterOfNeighbours(solution.problem, neighbours.correlation))));
+    result->notes.push_back(
+        Say(kNeighboursCounted, result->neighbour_noise,
+            std::sqrt(1 + 2 * std::max(0.0, neighbours.correlation) / (1 - result->neighbour_noise))));
     return;
   }
   // What is considered looks the same, and is in u.

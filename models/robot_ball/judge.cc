@@ -371,7 +371,7 @@ void JudgeChange(const ScreenedFit& fitted, Calibration* result) {
     return six;
   };
   const auto find = [&](const Order& order, int first) {
-    return FindChange(solution.problem, solution.fit.estimate, solution.linear, NoiseDof(*result), 1, order,
+    return FindChange(solution.problem, solution.fit.estimate, solution.linear, NoiseDof(*result), order,
                       six_from(first));
   };
   Order all, order;

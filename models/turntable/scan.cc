@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <span>
 #include "io/message.h"
 #include "models/line/moments.h"
 #include "models/turntable/compress.h"
@@ -36,13 +37,16 @@ Result<std::vector<char>> Kept(const ScanDeclaration& scan, const ScanBatch& bat
   return kept;
 }
 
+constexpr size_t kTakenPoints = 100'000;  // at once, from a scan whose points are not held
+
 // Groups points into profiles as they come.
 class Gatherer {
  public:
   explicit Gatherer(const std::filesystem::path& path) : path_(path) {}
 
-  Result<void> Add(double alpha, const double* key, const double* time, double temperature, double y, double z,
-                   const double* range) {
+  // Points of one profile. key, time: if the file has them.
+  Result<void> Add(double alpha, const double* key, const double* time, double temperature, std::span<const double> y,
+                   std::span<const double> z, std::span<const double> range) {
     const size_t before = begun_;
     RawProfile* profile = key ? ByKey(*key, alpha) : ByAngle(alpha);
     if (begun_ > before) {
@@ -54,15 +58,17 @@ class Gatherer {
       return Error{fmt::format("{}: profile {:g}: found angles {:.9g} and {:.9g} rad, expected one angle a profile",
                                path_.string(), *key, profile->alpha, alpha)};
     }
-    profile->y.push_back(y);
-    profile->z.push_back(z);
-    if (range) profile->range.push_back(*range);
-    ++points_;
+    profile->y.insert(profile->y.end(), y.begin(), y.end());
+    profile->z.insert(profile->z.end(), z.begin(), z.end());
+    profile->range.insert(profile->range.end(), range.begin(), range.end());
+    points_ += y.size();
+    held_ += y.size();
     return {};
   }
 
   bool by_key() const { return by_key_; }
   size_t points() const { return points_; }
+  size_t held() const { return held_; }  // of them, not taken yet
   bool ranged() const { return !profiles_.empty() && !profiles_.front().range.empty(); }
   // All but the last, which may go on.
   std::vector<RawProfile> TakeComplete() {
@@ -70,6 +76,7 @@ class Gatherer {
     profiles_.pop_back();
     std::vector<RawProfile> complete = std::move(profiles_);
     profiles_.clear();
+    held_ = last.y.size();
     profiles_.push_back(std::move(last));
     return complete;
   }
@@ -103,7 +110,7 @@ class Gatherer {
   std::map<double, size_t> index_;
   size_t last_ = 0;
   bool by_key_ = false;
-  size_t points_ = 0, begun_ = 0;
+  size_t points_ = 0, held_ = 0, begun_ = 0;
 };
 
 bool LooksShuffled(const std::vector<Profile>& profiles) {
@@ -188,14 +195,23 @@ Result<RawScan> ReadScan(const ScanDeclaration& scan, const Senses& senses,
     SCANCAL_ASSIGN_OR_RETURN(const std::vector<char> kept, Kept(scan, batch, points));
     const int profile = batch.Find("profile"), time = batch.Find("time"), temperature = batch.Find("temperature");
     result.timed |= time >= 0;
-    for (size_t i = 0; i < batch.size(); ++i) {
+    const double* const keys = profile >= 0 ? batch.columns[profile].data() : nullptr;
+    for (size_t i = 0, end = 0; i < batch.size(); i = end) {
+      const auto goes_on = [&](size_t k) {
+        return kept[k] && points.alpha[k] == points.alpha[i] && (!keys || keys[k] == keys[i]);
+      };
+      end = i + 1;
       if (!kept[i]) continue;
-      SCANCAL_RETURN_IF_ERROR(gatherer.Add(points.alpha[i], profile >= 0 ? &batch.columns[profile][i] : nullptr,
-                                           time >= 0 ? &batch.columns[time][i] : nullptr,
-                                           temperature >= 0 ? batch.columns[temperature][i] : 0, points.y[i],
-                                           points.z[i], points.range.empty() ? nullptr : &points.range[i]));
+      while (end < batch.size() && goes_on(end)) ++end;
+      const auto of = [&](const std::vector<double>& column) {
+        return column.empty() ? std::span<const double>() : std::span(column).subspan(i, end - i);
+      };
+      SCANCAL_RETURN_IF_ERROR(gatherer.Add(
+          points.alpha[i], keys ? &keys[i] : nullptr, time >= 0 ? &batch.columns[time][i] : nullptr,
+          temperature >= 0 ? batch.columns[temperature][i] : 0, of(points.y), of(points.z), of(points.range)));
     }
-    if (gatherer.points() > kHeldPoints && !gatherer.by_key() && !gatherer.ranged()) {
+    if (gatherer.points() > kHeldPoints && gatherer.held() >= kTakenPoints && !gatherer.by_key() &&
+        !gatherer.ranged()) {
       result.holds_points = false;
       SCANCAL_RETURN_IF_ERROR(TakeIn(gatherer.TakeComplete(), scan, gatherer, senses.depth, &result));
     }

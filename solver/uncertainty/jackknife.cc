@@ -6,6 +6,7 @@
 #include "solver/dense.h"
 #include "solver/uncertainty/covariance.h"
 #include "solver/uncertainty/gum.h"
+#include "solver/uncertainty/neighbours.h"
 #include "solver/weigh.h"
 
 namespace scancal {
@@ -115,10 +116,11 @@ Jackknife LeaveOneTargetOut(const Problem& problem, const Fit& fit, const Linear
   return result;
 }
 
-ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate& fit, const Linearization& linear,
-                                          double scatter) {
+ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate& fit, const Linearization& linear) {
   const Considered considered = ConsideredScores(problem, fit, linear);
-  const std::vector<TargetScores> scores = ScoresByTarget(problem, linear);
+  std::vector<TargetScores> scores = ScoresByTarget(problem, linear);
+  for (size_t t = 0; t < problem.targets.size(); ++t)
+    scores[t].meat += AcrossNeighbours(problem, fit, linear, t, linear.targets[t].system_left);
   const Eigen::MatrixXd inverse = InverseInformation(linear);
   const auto n = inverse.rows();
   const size_t m = problem.targets.size();
@@ -144,7 +146,7 @@ ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate
     for (size_t j = 0; j < m; ++j) {
       const auto block = rows.middleCols(static_cast<Eigen::Index>(j) * n, n);
       const Eigen::MatrixXd of_own = block * considered.own[j];
-      covariance += scatter * block * scores[j].meat * block.transpose() + of_own * of_own.transpose();
+      covariance += block * scores[j].meat * block.transpose() + of_own * of_own.transpose();
     }
     const Eigen::MatrixXd of_all = rows * considered.common;
     covariance += of_all * of_all.transpose();
@@ -155,7 +157,7 @@ ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate
 }
 
 std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit, const Linearization& linear,
-                                    double noise_dof, double scatter) {
+                                    double noise_dof) {
   constexpr double kShared = 1e-4;  // of a direction's information: less is told by the one side only
   const size_t m = problem.targets.size();
   std::vector<TargetTest> tests(m);
@@ -171,6 +173,13 @@ std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit,
     common += considered.common.middleRows(n * static_cast<Eigen::Index>(t), n);
   }
   common = scored(common);
+  std::vector<Eigen::MatrixXd> neighbours(m);  // what they add to the covariance of a target's scores
+  Eigen::MatrixXd of_all = Eigen::MatrixXd::Zero(n, n);
+  for (size_t t = 0; t < m; ++t) {
+    neighbours[t] =
+        AcrossNeighbours(problem, fit, linear, t, scored(linear.targets[t].system_left.transpose()).transpose());
+    of_all += neighbours[t];
+  }
   for (size_t t = 0; t < m; ++t) {
     const LinearTarget& target = linear.targets[t];
     if (target.r.size() == 0) continue;
@@ -183,11 +192,16 @@ std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit,
     const Eigen::ArrayXd part = eigen.values(shared).array();
     const Eigen::MatrixXd basis = eigen.vectors(Eigen::all, shared);
     const Eigen::VectorXd score = basis.transpose() * (rows * target.r);
-    const Eigen::VectorXd of_noise = scatter * part * (1 - part);
-    Eigen::MatrixXd covariance = of_noise.asDiagonal();
+    // Of its score less what the joint fit takes from the scores of all.
+    const Eigen::MatrixXd own = basis.transpose() * neighbours[t] * basis, taken = part.matrix().asDiagonal() * own;
+    Eigen::MatrixXd of_noise = (part * (1 - part)).matrix().asDiagonal();
+    of_noise += own - taken - taken.transpose() +
+                part.matrix().asDiagonal() * (basis.transpose() * of_all * basis) * part.matrix().asDiagonal();
+    Eigen::MatrixXd covariance = of_noise;
     // What moves the scores of target j moves this one's through the joint fit as well.
-    const auto add = [&](const Eigen::MatrixXd& own, const Eigen::MatrixXd& all) {
-      const Eigen::MatrixXd effect = basis.transpose() * own - part.matrix().asDiagonal() * (basis.transpose() * all);
+    const auto add = [&](const Eigen::MatrixXd& of_target, const Eigen::MatrixXd& all) {
+      const Eigen::MatrixXd effect =
+          basis.transpose() * of_target - part.matrix().asDiagonal() * (basis.transpose() * all);
       covariance += effect * effect.transpose();
     };
     for (size_t j = 0; j < m; ++j) add(j == t ? considered.own[j] : 0 * considered.own[j], considered.own[j]);
@@ -197,7 +211,7 @@ std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit,
     const Eigen::VectorXd whitened = Eigen::LLT<Eigen::MatrixXd>(covariance).solve(score);
     test.F = score.dot(whitened) / test.dof1;
     test.p = std::min(1.0, static_cast<double>(m) * FUpperTail(test.F, test.dof1, noise_dof));
-    test.moves = to_y.solve(basis * ((1 - part).inverse().matrix().asDiagonal() * of_noise.cwiseProduct(whitened)));
+    test.moves = to_y.solve(basis * ((1 - part).inverse().matrix().asDiagonal() * (of_noise * whitened)));
   }
   return tests;
 }

@@ -21,23 +21,21 @@ struct Jackknife {
 Jackknife LeaveOneTargetOut(const Problem& problem, const Fit& fit, const Linearization& linear);
 
 // What the variances of the jackknife would be on average if views were independent, as the clustered covariance
-// supposes. Not that covariance itself: few targets, each needed by the others, scatter more. To first order, leaving
-// target i out moves the fit by (H - H_i)^-1 s_i (one Newton step from the fit; Miller 1974), where s_i = s_i0 - H_i
-// H^-1 sum_j s_j0 is its score at the fit and s_j0 has the covariance of its clusters and of what was considered: of
-// target scope its own, of system scope common.
+// supposes, but for neighbours whose correlation was estimated. Not that covariance itself: few targets, each needed by
+// the others, scatter more. To first order, leaving target i out moves the fit by (H - H_i)^-1 s_i (one Newton step
+// from the fit; Miller 1974), where s_i = s_i0 - H_i H^-1 sum_j s_j0 is its score at the fit and s_j0 has the
+// covariance of its clusters and of what was considered: of target scope its own, of system scope common.
 struct ExpectedJackknife {
   Eigen::VectorXd variance;  // per system quantity
   Eigen::VectorXd dof;       // of a chi-squared with the same mean and spread (Satterthwaite 1946); at most targets - 1
 };
-ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate& fit, const Linearization& linear,
-                                          double scatter = 1);
+ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate& fit, const Linearization& linear);
 
 // Does a target contradict the others? Its score at the joint fit, b = L'r with L its rows of the system, against what
 // noise and everything considered make of it (Chow 1960, Econometrica 28, 591, as the score test of Rao 1948): without
 // influences the covariance of b is A_t - A_t A^-1 A_t, and F is the drop of the sum of squares when the target is
 // given system quantities of its own, over its degrees of freedom. Only directions count that both the target and the
 // others determine. The problem is weighed with its noise, of noise_dof degrees of freedom.
-// scatter: as for TestMisfits.
 struct TargetTest {
   double F = 0, dof1 = 0;  // dof1 = 0: it shares nothing with the others
   double p = 1;            // for this target, among all (Bonferroni)
@@ -46,7 +44,7 @@ struct TargetTest {
   Eigen::VectorXd moves;
 };
 std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit, const Linearization& linear,
-                                    double noise_dof, double scatter = 1);
+                                    double noise_dof);
 
 // Targets that took no part, against the fit: with their own quantities fitted, their residuals d have the covariance
 // I + L S L' (L their rows of the system, S = covariance the fit's), so that

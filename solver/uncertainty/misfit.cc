@@ -2,8 +2,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include "solver/dense.h"
 #include "solver/uncertainty/gum.h"
+#include "solver/uncertainty/neighbours.h"
 #include "solver/weigh.h"
 
 namespace scancal {
@@ -121,7 +123,8 @@ struct Visible {
   Eigen::MatrixXd covariance;
 };
 
-Visible VisibleOf(const Columns& columns, const Eigen::VectorXd& r, const Eigen::MatrixXd& considered, double scatter) {
+Visible VisibleOf(const Columns& columns, const Eigen::VectorXd& r, const Eigen::MatrixXd& considered,
+                  const std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>& across_neighbours) {
   const ThinQr qr = QrOf(columns.left);
   const Eigen::Index n = columns.left.cols();
   const Svd svd = SvdOf(qr.r);
@@ -134,7 +137,8 @@ Visible VisibleOf(const Columns& columns, const Eigen::VectorXd& r, const Eigen:
   Visible visible;
   visible.directions = svd.v.leftCols(rank);
   visible.value = fitted(r);
-  visible.covariance = (scatter * inverse.cwiseAbs2()).asDiagonal();
+  visible.covariance = inverse.cwiseAbs2().asDiagonal();
+  visible.covariance += across_neighbours(qr.q * (svd.u.leftCols(rank) * inverse.asDiagonal()));
   if (considered.cols() > 0 && rank > 0) {
     const Eigen::MatrixXd of_considered = fitted(considered);
     visible.covariance += of_considered * of_considered.transpose();
@@ -145,7 +149,7 @@ Visible VisibleOf(const Columns& columns, const Eigen::VectorXd& r, const Eigen:
 }  // namespace
 
 std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit, const Linearization& linear,
-                                    double noise_dof, double scatter) {
+                                    double noise_dof) {
   std::vector<MisfitTest> misfits;
   if (!(noise_dof >= 1)) return misfits;
   const Eigen::VectorXd r = Residuals(linear);
@@ -153,9 +157,19 @@ std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit,
   std::vector<Columns> columns;
   for (const Source& source : sources) columns.push_back(ColumnsOf(problem, fit, linear, source));
   const Eigen::MatrixXd considered = ConsideredColumns(problem, sources, columns, r.size());
+  const auto across_neighbours = [&](const Eigen::MatrixXd& sums) {
+    Eigen::MatrixXd across = Eigen::MatrixXd::Zero(sums.cols(), sums.cols());
+    Eigen::Index at = 0;
+    for (size_t t = 0; t < problem.targets.size(); ++t) {
+      const Eigen::Index rows = linear.targets[t].r.size();
+      across += AcrossNeighbours(problem, fit, linear, t, sums.middleRows(at, rows));
+      at += rows;
+    }
+    return across;
+  };
   for (size_t s = 0; s < sources.size(); ++s) {
     if (!(columns[s].length > 0) || columns[s].left.cols() > r.size()) continue;
-    const Visible visible = VisibleOf(columns[s], r, considered, scatter);
+    const Visible visible = VisibleOf(columns[s], r, considered, across_neighbours);
     if (visible.value.size() == 0) continue;
     const Quantity& quantity = problem.quantities[sources[s].quantities[0]];
     MisfitTest& misfit = misfits.emplace_back();
@@ -184,8 +198,7 @@ std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit,
 }
 
 Change FindChange(const Problem& problem, const Estimate& fit, const Linearization& linear, double noise_dof,
-                  double scatter, const std::vector<std::pair<size_t, size_t>>& order,
-                  const std::vector<int>& quantities) {
+                  const std::vector<std::pair<size_t, size_t>>& order, const std::vector<int>& quantities) {
   Change best;
   const auto n = std::ssize(quantities);
   if (!(noise_dof >= 1) || n == 0) return best;
@@ -239,7 +252,7 @@ Change FindChange(const Problem& problem, const Estimate& fit, const Linearizati
     ++places;
     const Eigen::MatrixXd basis = eigen.vectors(Eigen::all, seen);
     const Eigen::MatrixXd score = basis.transpose() * scale.asDiagonal() * on_data;
-    Eigen::MatrixXd covariance = (scatter * eigen.values(seen)).asDiagonal();
+    Eigen::MatrixXd covariance = eigen.values(seen).asDiagonal();
     covariance += score.rightCols(considered.cols()) * score.rightCols(considered.cols()).transpose();
     const double dof = static_cast<double>(seen.size());
     const double F = score.col(0).dot(Eigen::LLT<Eigen::MatrixXd>(covariance).solve(score.col(0))) / dof;

@@ -13,14 +13,13 @@ namespace scancal {
 // was considered, itself among it, makes of m. F = m' (cov m)^-1 m / dof1; p after Bonferroni, for all that were
 // tested. The problem is weighed with its noise; linear: of the views, at the fit. noise_dof: degrees of freedom of
 // that noise.
-// scatter: of neighbours that err alike, ScatterOfNeighbours; the noise counts so many times.
 std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit, const Linearization& linear,
-                                    double noise_dof, double scatter = 1);
+                                    double noise_dof);
 
 // Did something change in between? From some view on, in the order of time, these quantities may have had other values:
 // their columns from there on are tested as above, at every place that leaves a twentieth of the views on either side,
 // and four (Andrews 1993, Econometrica 61, 821: nearer to the ends a few outliers decide); what was considered counts
-// as noise. order: target and view.
+// as noise. Views are independent. order: target and view.
 struct Change {
   size_t place = 0;           // in `order`: the first view that is not as before
   double F = 0, dof1 = 0;     // of the most significant place
@@ -29,8 +28,7 @@ struct Change {
   std::vector<double> moves;  // per estimated parameter: what the step has moved it by
 };
 Change FindChange(const Problem& problem, const Estimate& fit, const Linearization& linear, double noise_dof,
-                  double scatter, const std::vector<std::pair<size_t, size_t>>& order,
-                  const std::vector<int>& quantities);
+                  const std::vector<std::pair<size_t, size_t>>& order, const std::vector<int>& quantities);
 
 // Are views independent of each other, as everything here counts them? Correlation between neighbouring views of a
 // target, pooled over targets and over everything of view scope: with z_v the whitened residual of view v along the

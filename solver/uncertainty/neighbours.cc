@@ -12,10 +12,11 @@ namespace scancal {
 namespace {
 
 constexpr int kMostRows = 12;
-constexpr double kFewestStretches = 10;
+constexpr double kFewestStretches = 5;
 constexpr double kSignificant = 16, kLeastCorrelation = 0.1;
-constexpr int kMostEvaluations = 160;
-constexpr double kSettled = 1e-4;  // of -2 l
+constexpr int kMostEvaluations = 240;
+constexpr double kSmall = 1e-6;    // mm, rad: where a standard deviation begins that may be none
+constexpr double kSettled = 1e-2;  // of -2 l: a tenth of a standard error
 
 using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRows, kMostRows>;
 
@@ -26,13 +27,22 @@ struct View {
 
 struct Ordered {  // one target
   std::vector<View> views;
-  Eigen::MatrixXd priors;  // rows as columns of a view; of its own quantities
+  Eigen::MatrixXd priors;          // rows as columns of a view; of its own quantities
+  std::vector<Eigen::Index> free;  // of each prior: which of the sources whose u is free, or -1
+};
+
+// What the likelihood is a function of.
+struct Guess {
+  Eigen::VectorXd of_view;    // u of each quantity of view scope
+  Eigen::VectorXd of_target;  // of each source that is held
+  double rho = 0;
 };
 
 // -2 l of the variances and the correlation.
 class Likelihood {
  public:
-  Likelihood(const Problem& problem, const Estimate& at) {
+  // free: priors of target scope that stand in the problem with u = 1.
+  Likelihood(const Problem& problem, const Estimate& at, const std::vector<std::string>& free) {
     const std::vector<int> own = problem.With({Scope::kTarget}, Role::kEstimate),
                            system = problem.With({Scope::kSystem}, Role::kEstimate),
                            points = problem.With({Scope::kPoint}, Role::kConsider);
@@ -52,6 +62,9 @@ class Likelihood {
           block.Evaluate(values.data(), seeds, &r, &jacobian);
           target.priors.conservativeResize(target.priors.rows() + r.size(), Eigen::NoChange);
           target.priors.bottomRows(r.size()) << jacobian, r;
+          const auto found = std::find(free.begin(), free.end(), block.prior);
+          target.free.resize(static_cast<size_t>(target.priors.rows()),
+                             found == free.end() ? -1 : found - free.begin());
           continue;
         }
         if (block.rows->size() > kMostRows || std::ssize(quantities_) > kMostRows) {
@@ -91,13 +104,12 @@ class Likelihood {
     return sum;
   }
 
-  double At(const Eigen::VectorXd& u, double rho) const {
-    const Eigen::VectorXd variance = u.cwiseAbs2();
+  double At(const Guess& guess) const {
     double logs = 0;
     TriangularFactor whole(static_cast<int>(system_) + 1);
     whole.Add(system_priors_);
     for (const Ordered& target : targets_) {
-      const Eigen::MatrixXd rows = Filtered(target, variance, rho, &logs);
+      const Eigen::MatrixXd rows = Filtered(target, guess, &logs);
       const Eigen::MatrixXd r = UpperTriangle(rows);
       for (Eigen::Index k = 0; k < own_; ++k) logs += 2 * std::log(std::abs(r(k, k)));
       whole.Add(r.bottomRightCorner(system_ + 1, system_ + 1));
@@ -109,13 +121,21 @@ class Likelihood {
 
  private:
   // The innovations of all columns, divided by their standard deviations.
-  Eigen::MatrixXd Filtered(const Ordered& target, const Eigen::VectorXd& variance, double rho, double* logs) const {
+  Eigen::MatrixXd Filtered(const Ordered& target, const Guess& guess, double* logs) const {
+    const Eigen::VectorXd variance = guess.of_view.cwiseAbs2();
+    const double rho = guess.rho;
     const Eigen::Index columns = own_ + system_ + 1, states = variance.size();
     Eigen::Index rows = target.priors.rows();
     for (const View& view : target.views) rows += view.columns.rows();
     Eigen::MatrixXd filtered(std::max(rows, columns), columns);
     filtered.bottomRows(filtered.rows() - rows).setZero();
     filtered.topRows(target.priors.rows()) = target.priors;
+    for (Eigen::Index k = 0; k < target.priors.rows(); ++k) {
+      if (target.free[static_cast<size_t>(k)] < 0) continue;
+      const double u = guess.of_target[target.free[static_cast<size_t>(k)]];
+      filtered.row(k) /= u;
+      *logs += 2 * std::log(u);
+    }
     Eigen::Index row = target.priors.rows();
     Eigen::MatrixXd state = Eigen::MatrixXd::Zero(states, columns), innovation;
     Small covariance = variance.asDiagonal();
@@ -199,19 +219,18 @@ bool EstimateNeighbours(Problem* problem, const Estimate& at, Variances* varianc
   const std::vector<int> considered = problem->With({Scope::kSystem, Scope::kTarget}, Role::kConsider);
   for (const int k : considered) free.quantities[k].role = Role::kEstimate;
   free.AddPriors(considered);
-  // What a target may have for itself, and nobody estimates, is no noise: with a prior as wide as anything it is left
-  // out.
-  constexpr double kAnything = 1;
-  std::vector<int> held;
-  for (const int k : problem->With({Scope::kTarget}, Role::kHold)) {
+  const std::vector<int> held = problem->With({Scope::kTarget}, Role::kHold);
+  std::vector<std::string> sources;
+  for (const int k : held) {
     free.quantities[k].role = Role::kEstimate;
-    free.quantities[k].u = kAnything;
-    held.push_back(k);
+    free.quantities[k].u = 1;
+    const std::string source = "prior of " + free.quantities[k].Source();  // as AddPriors names it
+    if (std::find(sources.begin(), sources.end(), source) == sources.end()) sources.push_back(source);
   }
   free.AddPriors(held);
   Estimate there = NominalStart(free);
   for (size_t t = 0; t < problem->targets.size(); ++t) SetValues(free, Values(*problem, at, t), t, &there);
-  const Likelihood likelihood(free, there);
+  const Likelihood likelihood(free, there, sources);
   if (!likelihood.sound()) return false;
   const std::vector<int>& all = likelihood.quantities();
   Eigen::VectorXd u(std::ssize(all));
@@ -222,32 +241,63 @@ bool EstimateNeighbours(Problem* problem, const Estimate& at, Variances* varianc
     if (std::find(variances->sources.begin(), variances->sources.end(), q.Source()) != variances->sources.end())
       estimated.push_back(k);
   }
-  // In logarithms, from what independent views gave; what those had at zero begins small.
+  // In logarithms, from what independent views gave; what those had at zero begins small. Last, the correlation.
+  const Eigen::Index of_view = std::ssize(estimated), of_target = std::ssize(sources), last = of_view + of_target;
   const auto unpack = [&](const Eigen::VectorXd& x) {
-    Eigen::VectorXd all_u = u;
-    for (size_t k = 0; k < estimated.size(); ++k) all_u[estimated[k]] = std::exp(x[static_cast<Eigen::Index>(k)]);
-    return all_u;
+    Guess guess{u, x.segment(of_view, of_target).array().exp(), std::tanh(x[last])};
+    for (Eigen::Index k = 0; k < of_view; ++k) guess.of_view[estimated[static_cast<size_t>(k)]] = std::exp(x[k]);
+    return guess;
   };
-  Eigen::VectorXd start(std::ssize(estimated) + 1);
-  for (size_t k = 0; k < estimated.size(); ++k)
-    start[static_cast<Eigen::Index>(k)] = std::log(std::max(u[estimated[k]], 1e-9));
-  start[start.size() - 1] = std::atanh(0.5);
   const auto f = [&](const Eigen::VectorXd& x) {
-    const double value = likelihood.At(unpack(x), std::tanh(x[x.size() - 1]));
+    const double value = likelihood.At(unpack(x));
     return std::isfinite(value) ? value : std::numeric_limits<double>::max();
   };
-  const double independent = likelihood.At(u, 0);
-  if (independent - likelihood.At(u, 0.1) < 0) return false;  // the likelihood falls: nothing to be found
-  double least = 0;
-  const Eigen::VectorXd best = Minimum(f, start, 0.7, &least);
-  const double rho = std::tanh(best[best.size() - 1]);
-  if (!(independent - least > kSignificant) || rho < kLeastCorrelation) return false;
+  const auto minimise = [&](Eigen::VectorXd* x, bool targets, bool correlation) {
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index k = 0; k <= last; ++k)
+      if (k < of_view || (k < last ? targets : correlation)) free.push_back(k);
+    const auto of_free = [&](const Eigen::VectorXd& values) {
+      Eigen::VectorXd all_values = *x;
+      all_values(free) = values;
+      return f(all_values);
+    };
+    double least = 0;
+    (*x)(free) = Minimum(of_free, (*x)(free), 0.7, &least);
+    return least;
+  };
+  Eigen::VectorXd white = Eigen::VectorXd::Zero(last + 1);
+  for (Eigen::Index k = 0; k < of_view; ++k)
+    white[k] = std::log(std::max(u[estimated[static_cast<size_t>(k)]], kSmall));
+  white.segment(of_view, of_target).setConstant(std::log(kSmall));
+  Eigen::VectorXd best = white;
+  best[last] = std::atanh(0.5);
+  const double correlated = minimise(&best, false, true);
+  if (!(f(white) - correlated > kSignificant)) return false;
+  if (of_target > 0) {
+    Eigen::VectorXd smooth = white;
+    double least = f(smooth);
+    for (Eigen::VectorXd other = smooth; other[of_view] < 0;) {
+      other.segment(of_view, of_target).array() += std::log(10);
+      if (const double value = f(other); value < least) {
+        least = value;
+        smooth = other;
+      }
+    }
+    least = minimise(&smooth, true, false);
+    if (least < correlated) {
+      best = smooth;
+      best[last] = std::atanh(0.5);
+      if (!(least - minimise(&best, true, true) > kSignificant)) return false;
+    }
+  }
+  const Guess found = unpack(best);
+  const double rho = found.rho;
+  if (rho < kLeastCorrelation) return false;
   if (likelihood.views() * (1 - rho) < kFewestStretches * (1 + rho)) return false;
-  const Eigen::VectorXd found = unpack(best);
   const double fewer = (3 + rho * rho) / (1 - rho * rho);
   for (Eigen::Index k = 0; k < u.size(); ++k) {
     Quantity& q = problem->quantities[all[static_cast<size_t>(k)]];
-    q.u = found[k];
+    q.u = found.of_view[k];
     q.neighbour = rho;
     for (size_t s = 0; s < variances->sources.size(); ++s) {
       if (variances->sources[s] != q.Source()) continue;
@@ -266,10 +316,31 @@ bool EstimateNeighbours(Problem* problem, const Estimate& at, Variances* varianc
   return true;
 }
 
-double ScatterOfNeighbours(const Problem& problem, double correlation) {
-  for (const Quantity& q : problem.quantities)
-    if (q.neighbour > 0) return 1 + 2 * std::max(0.0, correlation) / (1 - q.neighbour);
-  return 1;
+Eigen::MatrixXd AcrossNeighbours(const Problem& problem, const Estimate& fit, const Linearization& linear,
+                                 size_t target, const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd across = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  std::vector<int> alike;
+  for (int k = 0; k < std::ssize(problem.quantities); ++k)
+    if (problem.quantities[k].neighbour > 0) alike.push_back(k);
+  if (alike.empty()) return across;
+  Eigen::VectorXd u(std::ssize(alike)), rho = u;
+  for (Eigen::Index k = 0; k < u.size(); ++k) {
+    u[k] = problem.quantities[alike[static_cast<size_t>(k)]].u;
+    rho[k] = problem.quantities[alike[static_cast<size_t>(k)]].neighbour;
+  }
+  const std::vector<double> values = Values(problem, fit, target);
+  const LinearTarget& rows = linear.targets[target];
+  Eigen::MatrixXd before = Eigen::MatrixXd::Zero(columns.cols(), u.size());  // sum of rho^distance times those before
+  for (size_t v = 0; v < problem.targets[target].views.size(); ++v) {
+    const Block& view = problem.targets[target].views[v];
+    if (!view.prior.empty()) continue;
+    const Eigen::MatrixXd scores = columns.middleRows(rows.first[v], view.size()).transpose() *
+                                   view.Weighted(RawDerivatives(view, values, alike)) * u.asDiagonal();
+    before *= rho.asDiagonal();
+    across += before * scores.transpose() + scores * before.transpose();
+    before += scores;
+  }
+  return across;
 }
 
 }  // namespace scancal

@@ -1,6 +1,7 @@
 // A model that is no scanner: points (x, y) of several straight lines that share a slope; for tests of the solver
 // alone.
 #pragma once
+#include <cmath>
 #include <string>
 #include <vector>
 #include "solver/model.h"
@@ -43,6 +44,7 @@ class LineModel {
 
 struct LineScene {
   double slope = 0.3, curvature = 0, noise = 0.1, shift = 0;
+  double shift_correlation = 0;  // of neighbouring views
   int targets = 3, views = 8, points = 5;
   uint64_t seed = 1;
   std::vector<LineModel::Target> Make() const {
@@ -51,9 +53,11 @@ struct LineScene {
     for (int t = 0; t < targets; ++t) {
       LineModel::Target& target = result.emplace_back();
       target.name = "line " + std::to_string(t);
+      double moved = 0;
       for (int v = 0; v < views; ++v) {
         LineModel::View& view = target.views.emplace_back();
-        const double moved = shift * random.Normal();
+        const double rho = v == 0 ? 0 : shift_correlation;
+        moved = rho * moved + shift * std::sqrt(1 - rho * rho) * random.Normal();
         for (int i = 0; i < points; ++i) {
           const double x = 0.7 * v + 0.1 * i + 0.05 * t;
           view.x.push_back(x);
