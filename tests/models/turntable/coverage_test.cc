@@ -42,7 +42,7 @@ TEST_P(CoverageOfMore, StatedIntervalsHoldTheTruth) {
   const auto row = std::find_if(rows.begin(), rows.end(), [](const Row& each) { return each.name == GetParam(); });
   ASSERT_NE(row, rows.end());
   Row small = *row;
-  small.scene.profiles = 120;  // of fewer the correlation of neighbours is not always found
+  small.scene.profiles = 60;
   small.scene.points = 30;
   const Tally tally = Count(TryAll(small, 2000, kSets, 2));
   const boost::math::binomial right(kSets, 0.95);
