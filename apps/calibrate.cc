@@ -127,6 +127,11 @@ Json FiguresOf(const Rechecked& result) {
 Result<std::vector<HashedFile>> InputsOf(const Scanner& scanner) {
   std::vector<HashedFile> inputs, before;
   for (const std::filesystem::path& file : scanner.Files()) {
+    std::error_code ignored;
+    if (std::filesystem::is_fifo(file, ignored)) {  // gone when it has been read
+      inputs.push_back({file.filename().string(), ""});
+      continue;
+    }
     SCANCAL_ASSIGN_OR_RETURN(const std::string sha256, Sha256(file));
     inputs.push_back({file.filename().string(), sha256});
     if (!IsResult(file)) continue;

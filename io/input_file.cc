@@ -120,6 +120,14 @@ Result<size_t> InputFile::Read(char* buffer, size_t size) {
 }
 
 Result<void> InputFile::Skip(int64_t bytes) {
+  std::array<char, 65536> passed;
+  while (!regular_ && bytes > 0) {
+    const auto size = static_cast<size_t>(std::min<int64_t>(bytes, passed.size()));
+    SCANCAL_ASSIGN_OR_RETURN(const size_t count, Read(passed.data(), size));
+    if (count < size) return {};  // who reads on will see that it ended
+    bytes -= static_cast<int64_t>(count);
+  }
+  if (!regular_) return {};
   if (::lseek(descriptor_, bytes, SEEK_CUR) < 0) return Error{name_ + ": cannot be read: " + SystemMessage(errno)};
   return {};
 }

@@ -18,7 +18,7 @@ class InputFile {
 
   // Fills the buffer; fewer bytes only at the end of the file.
   Result<size_t> Read(char* buffer, size_t size);
-  Result<void> Skip(int64_t bytes);                  // of a regular file
+  Result<void> Skip(int64_t bytes);
   const std::string& name() const { return name_; }  // as the caller gave it
   int64_t size() const { return size_; }             // bytes; 0 for a pipe
   bool regular() const { return regular_; }

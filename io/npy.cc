@@ -116,7 +116,7 @@ class NpyReader : public ScanReader {
   Result<void> ReadHeader();
   Result<bool> Next(ScanBatch* batch) override;
   int64_t bytes_read() const override { return header_.bytes + row_ * row_bytes_; }
-  int64_t bytes_total() const override { return file_.size(); }
+  int64_t bytes_total() const override { return header_.bytes + header_.rows * row_bytes_; }
 
  private:
   Result<void> CheckSize() const;
@@ -156,6 +156,7 @@ Result<void> NpyReader::ReadHeader() {
 }
 
 Result<void> NpyReader::CheckSize() const {
+  if (!file_.regular()) return {};  // a pipe does not say how much it holds
   const int64_t found = file_.size() - header_.bytes;
   if (header_.rows <= found / row_bytes_ && header_.rows * row_bytes_ == found) return {};
   return Error{file_.name() + ": found " + std::to_string(found) + " bytes of numbers, expected " +
@@ -182,7 +183,11 @@ Result<size_t> NpyReader::ReadRows(size_t most) {
   const size_t rows = std::min(most, static_cast<size_t>(std::max<int64_t>(left, 0)));
   buffer_.resize(rows * static_cast<size_t>(row_bytes_));
   SCANCAL_ASSIGN_OR_RETURN(const size_t count, file_.Read(buffer_.data(), buffer_.size()));
-  if (count < buffer_.size()) return Error{file_.name() + ": the file became shorter while it was read"};
+  if (count < buffer_.size())
+    return Error{
+        file_.name() + ": found the end after row " + std::to_string(row_ + static_cast<int64_t>(count) / row_bytes_) +
+        ", expected " + std::to_string(header_.rows) +
+        " rows: " + (file_.regular() ? "the file became shorter while it was read" : "the pipe was closed early")};
   return rows;
 }
 
@@ -223,7 +228,6 @@ std::string MakeNpyHeader(int64_t rows, int64_t columns) {
 
 Result<std::unique_ptr<ScanReader>> OpenNpy(const ScanFormat& format) {
   SCANCAL_ASSIGN_OR_RETURN(InputFile file, InputFile::Open(format.path));
-  if (!file.regular()) return Error{file.name() + ": found a pipe or a device, expected a .npy file"};
   auto reader = std::make_unique<NpyReader>(format, std::move(file));
   SCANCAL_RETURN_IF_ERROR(reader->ReadHeader());
   return std::unique_ptr<ScanReader>(std::move(reader));

@@ -80,8 +80,8 @@ ScanDeclaration ReadTarget(YamlMap target, const YamlMap& top, const Dataset& da
   scan.name = target.Text("name");
   if (scan.name.empty()) target.Fail("name", "expected a name");
   scan.scan = target.Text("scan");
-  if (scan.scan.empty()) target.Fail("scan", "expected the path of a scan file");
-  scan.format.path = dataset.file.parent_path() / scan.scan;
+  if (scan.scan.empty()) target.Fail("scan", "expected the path of a scan file, or - for the standard input");
+  scan.format.path = scan.scan == "-" ? "/dev/stdin" : dataset.file.parent_path() / scan.scan;
   scan.format.units = dataset.units;
   scan.format.one_of = {{"y", "z"}, {"bearing", "range"}};
   for (const auto& [name, dimension] : kColumns) scan.format.columns.push_back({name, dimension, name == "angle"});

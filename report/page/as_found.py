@@ -160,7 +160,7 @@ def _with_other_nominals(found: Calibration, left: Calibration) -> list[str]:
 
 def _common_inputs(found: Calibration, left: Calibration) -> list[str]:
     """By content, not by name. dataset.yaml is a declaration, no measurement."""
-    earlier = {each.get("sha256") for each in found.get("inputs") or []}
+    earlier = {each.get("sha256") for each in found.get("inputs") or [] if each.get("sha256")}
     return [str(each.get("file")) for each in left.get("inputs") or []
             if each.get("sha256") in earlier and not str(each.get("file")).endswith((".yaml", ".yml"))]
 

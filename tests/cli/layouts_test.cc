@@ -1,7 +1,9 @@
 // The same measurement written in other ways gives the same result.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <algorithm>
 #include <random>
+#include <thread>
 #include "io/units.h"
 #include "tests/cli/data_set.h"
 
@@ -233,6 +235,23 @@ TEST_F(LayoutsTest, WhereOneFileHoldsAll) {
   }
   WriteWhole(data_ / "all.csv", all);
   ExpectSameResult(Refined(data_));
+}
+
+TEST_F(LayoutsTest, APipeAndTheStandardInput) {
+  const std::string left = ReadWhole(data_ / "left.csv");
+  fs::remove(data_ / "left.csv");
+  ASSERT_EQ(::mkfifo((data_ / "left.csv").c_str(), 0600), 0);
+  for (const bool standard_input : {false, true}) {
+    if (standard_input) Replace(data_ / "dataset.yaml", "left.csv", "\"-\"");
+    std::thread writer([&] { WriteWhole(data_ / "left.csv", left); });
+    Surroundings surroundings;
+    if (standard_input) surroundings.input = data_ / "left.csv";
+    const fs::path out = data_ / "of a pipe";
+    const Outcome outcome = RunScancal({"refine", data_.string(), "--out=" + out.string()}, surroundings);
+    writer.join();
+    ASSERT_EQ(outcome.exit_code, 0) << ::testing::PrintToString(outcome);
+    ExpectSameResult(Json::parse(ReadWhole(out / "calibration.json")));
+  }
 }
 
 TEST_F(LayoutsTest, SearchIsAskedOnlyWhereSomethingIsSearched) {

@@ -28,8 +28,9 @@ inline void PrintTo(const Outcome& outcome, std::ostream* stream) {
 }
 
 struct Surroundings {
-  std::filesystem::path folder;        // the current folder of the program; empty: that of the test
-  std::optional<rlim_t> largest_file;  // bytes; more fails like a full disk
+  std::filesystem::path folder = {};        // the current folder of the program; empty: that of the test
+  std::optional<rlim_t> largest_file = {};  // bytes; more fails like a full disk
+  std::filesystem::path input = {};         // standard input; empty: nothing
 };
 
 // A running scancal. Its output goes to files without a name, so that no pipe can fill up.
@@ -91,8 +92,8 @@ class RunningProgram {
 
   // In the child: nothing here allocates.
   [[noreturn]] void Become(char* const* words, const Surroundings& surroundings) const {
-    const int nothing = ::open("/dev/null", O_RDONLY);
-    bool ready = ::dup2(nothing, 0) == 0 && ::dup2(out_, 1) == 1 && ::dup2(err_, 2) == 2;
+    const int input = ::open(surroundings.input.empty() ? "/dev/null" : surroundings.input.c_str(), O_RDONLY);
+    bool ready = ::dup2(input, 0) == 0 && ::dup2(out_, 1) == 1 && ::dup2(err_, 2) == 2;
     if (!surroundings.folder.empty()) ready = ready && ::chdir(surroundings.folder.c_str()) == 0;
     if (surroundings.largest_file) {
       const rlimit limit = {*surroundings.largest_file, *surroundings.largest_file};

@@ -1,9 +1,11 @@
 // Scans as arrays of numpy.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <thread>
 #include "io/units.h"
 #include "tests/io/scan_test.h"
 
@@ -107,9 +109,24 @@ TEST_F(ScanNpyTest, LargeArraysComeInBatchesAndTellTheirProgress) {
   size_t points = 0, batches = 0;
   for (; *(*reader)->Next(&batch); ++batches) points += batch.size();
   EXPECT_EQ(points, kPoints);
-  EXPECT_EQ(batches, 3U);
+  EXPECT_GT(batches, 3U);
   EXPECT_EQ((*reader)->bytes_total(), static_cast<int64_t>(contents.size()));
   EXPECT_EQ((*reader)->bytes_read(), (*reader)->bytes_total());
+}
+
+TEST_F(ScanNpyTest, APipeIsRead) {
+  ScanFormat format = Format("");
+  format.path = folder_.path() / "pipe.npy";
+  format.lines = {2, 4};
+  ASSERT_EQ(::mkfifo(format.path.c_str(), 0600), 0);
+  const std::string contents = Header(Dictionary("'<f8'", "(3, 3)")) + Bytes<double>({1, 2, 3, 4, 5, 6, 7, 8, 9});
+  std::thread writer([&] { folder_.Write("pipe.npy", contents); });
+  EXPECT_THAT(ReadAll(format).columns[1], ElementsAre(5, 8));
+  writer.join();
+  writer = std::thread([&] { folder_.Write("pipe.npy", contents.substr(0, contents.size() - 8)); });
+  EXPECT_THAT(ReadAll(format).error,
+              HasSubstr("found the end after row 2, expected 3 rows: the pipe was closed early"));
+  writer.join();
 }
 
 TEST_F(ScanNpyTest, InfinityIsAnErrorWithItsRow) {

@@ -144,7 +144,7 @@ TEST_F(ScanCsvTest, LargeFilesComeInBatchesAndTellTheirProgress) {
     for (const double y : batch.columns[1]) ASSERT_EQ(y, expected++);
   }
   EXPECT_EQ(expected, kPoints);
-  EXPECT_EQ(batches, 4U);
+  EXPECT_GT(batches, 3U);
   EXPECT_EQ(batch.size(), 0U);
   EXPECT_EQ((*reader)->bytes_read(), (*reader)->bytes_total());
   EXPECT_FALSE(*(*reader)->Next(&batch));

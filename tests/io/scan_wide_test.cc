@@ -98,10 +98,10 @@ TEST_F(ScanWideTest, ManyProfilesComeInBatches) {
   size_t points = 0, batches = 0;
   for (; *(*reader)->Next(&batch); ++batches) {
     points += batch.size();
-    EXPECT_LT(batch.size(), 100'200U);
+    EXPECT_LT(batch.size(), 8400U);
   }
   EXPECT_EQ(points, 303'000U);
-  EXPECT_EQ(batches, 4U);
+  EXPECT_GT(batches, 3U);
 }
 
 TEST_F(ScanWideTest, TextInACellIsAnErrorWithItsPlace) {

@@ -6,7 +6,7 @@ MOST_FILES = 100
 
 
 def content(c: Calibration, previous: Calibration | None, t: Language) -> dict[str, object]:
-    files = [(str(each.get("file", "–")), each.get("sha256", "–")) for each in c.get("inputs") or []]
+    files = [(str(each.get("file", "–")), each.get("sha256") or "–") for each in c.get("inputs") or []]
     from_page = [(f"{t(f'inputs.{key}')} {each.file.name}", each.sha256)
                  for key, each in (("page", c), ("previous", previous)) if each is not None and each.sha256]
     data = (c.get("data") or {}).get("sha256")
