@@ -55,6 +55,20 @@ TEST_F(VerdictsOfProgramTest, ParallelPlacementsAreComputedButUnreliable) {
   EXPECT_THAT(Sentences(result, "unreliable"), HasSubstr(worse + " suffers most"));
 }
 
+TEST_F(VerdictsOfProgramTest, AScanOfTwoPlanesIsTold) {
+  const fs::path data = MakeData();
+  std::vector<ScanPoint> half = ReadPoints(data / "left.csv"), other = ReadPoints(data / "right.csv");
+  std::erase_if(half, [](const ScanPoint& p) { return p.angle > 0; });
+  std::erase_if(other, [](const ScanPoint& p) { return p.angle <= 0; });
+  half.insert(half.end(), other.begin(), other.end());
+  WritePoints(data / "left.csv", half);
+  fs::remove(data / "right.csv");
+  Replace(data / "dataset.yaml", "  - {name: right, scan: right.csv}\n", "");
+  const std::string first = Refined(data, 2)["unreliable"][0];
+  EXPECT_THAT(first,
+              AllOf(HasSubstr("target left: the scan holds more than one plane"), HasSubstr("crop it with keep")));
+}
+
 TEST_F(VerdictsOfProgramTest, PlacementsSixDegreesApartAreDifferent) {
   const Json result = Refined(Write({.planes = {{0, 10, 480}, {6.5, 10, 470}}}));
   EXPECT_THAT(Sentences(result, "unreliable"), IsEmpty());
