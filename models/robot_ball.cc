@@ -33,6 +33,8 @@ Model::Model(std::vector<Link> links, std::vector<Sphere> spheres, bool measured
   quantities_[kScannerScale].in_nodes = false;  // the measured centres are the nodes' constant
   for (const Sphere& sphere : spheres_) length_ = std::max(length_, sphere.centre.norm());
   for (const Sphere& sphere : spheres_) declare("sphere_" + sphere.name, 3, kSystem, Role::kHold, "artifact");
+  for (int k = 3; k < 6 && spheres_.size() == 1; ++k)  // a point has no turn
+    quantity((measured_in_world_ ? kHandEye : kArtifact) + k).role = Role::kHold;
 }
 
 std::vector<StandIns<Model::View>> Model::MakeNodes(const Target& station) const {

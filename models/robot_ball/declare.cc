@@ -308,9 +308,6 @@ Result<Declaration> Declare(const Dataset& dataset) {
 Result<Model> DeclareModel(const Declaration& declaration) {
   const Measurements& data = declaration.data;
   Model model(data.links, data.spheres, data.measured_in_world);
-  if (data.spheres.size() == 1)  // a point has no turn
-    for (int k = 3; k < 6; ++k)
-      model.quantity((data.measured_in_world ? Model::kHandEye : Model::kArtifact) + k).role = Role::kHold;
   SCANCAL_RETURN_IF_ERROR(Setter(declaration, &model).Run());
   return model;
 }

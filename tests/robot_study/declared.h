@@ -36,7 +36,7 @@ inline robot_ball::Scene WithBacklash(const robot_ball::Scene& scene) {
 // u.
 inline robot_ball::Model DeclaredModel(const robot_ball::Measurements& data, const robot_ball::Scene& scene,
                                        Noise noise = Noise::kDeclared) {
-  robot_ball::Model model(data.links, data.spheres);
+  robot_ball::Model model(data.links, data.spheres, data.measured_in_world);
   const auto consider = [&](int k, double u) {
     if (u > 0) {
       model.quantity(k).role = Role::kConsider;

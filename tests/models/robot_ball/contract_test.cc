@@ -52,17 +52,28 @@ struct RobotCase {
   }
 
   // A turn by nearly pi has two rotation vectors: the one that the truth is written in.
-  static void WriteLike(const Eigen::VectorXd& truth, Eigen::VectorXd* system) {
+  static void WriteLike(const Quantities& quantities, const Eigen::VectorXd& truth, Eigen::VectorXd* system) {
+    if (quantities[Model::kHandEye + 3].role != Role::kEstimate) return;
     const Eigen::Vector3d turn = system->segment<3>(3), other = turn * (1 - 2 * M_PI / turn.norm());
     const Eigen::Vector3d like = truth.segment<3>(3);
     if ((other - like).norm() < (turn - like).norm()) system->segment<3>(3) = other;
   }
 
-  static ContractData Make(const ContractOptions& options) {
-    const Scene scene = SceneOf(options);
-    Simulated robot = Simulate(scene);
-    Model model = robot_study::DeclaredModel(
-        robot.data, scene, options.influences ? robot_study::Noise::kDeclared : robot_study::Noise::kEstimated);
+  static ContractData Make(const ContractOptions& options) { return MakeOf(options, Simulate(SceneOf(options))); }
+
+  static Model ModelOf(const ContractOptions& options, const Simulated& robot) {
+    Model model =
+        robot_study::DeclaredModel(robot.data, SceneOf(options),
+                                   options.influences ? robot_study::Noise::kDeclared : robot_study::Noise::kEstimated);
+    for (int k = 0; k < 6 && robot.data.hand_eye; ++k) {
+      model.quantity(Model::kHandEye + k).role = Role::kHold;
+      model.quantity(Model::kHandEye + k).value = NumbersOf(*robot.data.hand_eye)[k];
+    }
+    return model;
+  }
+
+  static ContractData MakeOf(const ContractOptions& options, Simulated robot) {
+    Model model = ModelOf(options, robot);
     ContractData data;
     data.truth = Truth(model.quantities(), robot.truth);
     if (options.influences) {
@@ -79,48 +90,120 @@ struct RobotCase {
     }
     // From the truth moved a little: the same for any order.
     Kinematics near = robot.truth;
-    near.flange_from_scanner.translate(Eigen::Vector3d(0.3, -0.2, 0.1));
+    if (!robot.data.hand_eye) near.flange_from_scanner.translate(Eigen::Vector3d(0.3, -0.2, 0.1));
     const Result<std::vector<Station>> stations = StationsAt(robot.data, near);
     EXPECT_TRUE(stations.ok());
     for (const Station& station : *stations)
       for (const Model::View& pose : station.views) data.count += 3.0 * static_cast<double>(pose.balls.size());
     data.problem = MakeProblem(std::make_shared<const Model>(model), *stations);
     data.start = NominalStart(data.problem);
-    data.start.system.head<6>() = NumbersOf(near.flange_from_scanner);
-    WriteLike(data.truth, &data.start.system);
+    near.link_errors = LinksOf(Eigen::VectorXd::Zero(kLinkNumbers * std::ssize(near.link_errors)));
+    data.start.system = Truth(model.quantities(), near);
+    WriteLike(model.quantities(), data.truth, &data.start.system);
     if (options.influences) Weigh(&data.problem, data.start);
     return data;
   }
 
   // The data as calibration.json keeps them, to the last digit.
   static Eigen::VectorXd RoundTrip(double noise) {
-    const Simulated robot = Simulate(SceneOf({noise, 1, true, false, false}));
+    return RoundTripOf(Simulate(SceneOf({noise, 1, true, false, false})));
+  }
+
+  static Eigen::VectorXd RoundTripOf(const Simulated& robot) {
     Declaration written;
     written.data = robot.data;
     written.u_of_spheres.resize(robot.data.spheres.size());
     Result<Declaration> read = FromJson(Json::parse(ToJson(written).dump()), "some.json");
     EXPECT_TRUE(read.ok()) << read.error().message;
     read->data.links = robot.data.links;  // of dataset.yaml
-    const Model model(read->data.links, read->data.spheres);
+    read->data.measured_in_world = robot.data.measured_in_world;
+    read->data.hand_eye = robot.data.hand_eye;
+    const Model model = ModelOf({}, robot);
     const Result<Kinematics> start = InitialHandEye(read->data);
     const Result<JointFit> fit = FitJointly(read->data, model, start->flange_from_scanner);
     EXPECT_TRUE(fit.ok()) << fit.error().message;
     const Eigen::VectorXd truth = Truth(model.quantities(), robot.truth);
     Eigen::VectorXd estimate = fit->solution.fit.estimate.system;
-    WriteLike(truth, &estimate);
+    WriteLike(model.quantities(), truth, &estimate);
     return estimate - truth;
   }
 
-  static std::string Refusal() {
-    const Simulated robot = Simulate(SceneOf({}));
-    Model model(robot.data.links, robot.data.spheres);
+  static std::string Refusal() { return RefusalOf(Simulate(SceneOf({}))); }
+
+  static std::string RefusalOf(const Simulated& robot) {
+    Model model = ModelOf({}, robot);
     model.quantity(Model::kLinks).role = Role::kEstimate;  // the base itself
     const Result<JointFit> fit = FitJointly(robot.data, model, robot.truth.flange_from_scanner);
     return fit.ok() ? "" : fit.error().message;
   }
 };
 
+// Other arrangements of the same arm, whose points are seen from wherever its poses are.
+enum class Arrangement { kOneBall, kReflectors, kOneReflector, kHeldHandEye };
+
+template <Arrangement kArrangement>
+struct ArrangedCase : RobotCase {
+  static Simulated Robot(const ContractOptions& options) {
+    Scene scene = SceneOf(options);
+    scene.poses = 12;
+    Simulated robot = Simulate(scene);
+    Measurements& data = robot.data;
+    Random random(options.seed, 2000);
+    const auto draw = [&](double sigma) {
+      const double x = random.Normal(), y = random.Normal();
+      return Eigen::Vector3d(sigma * x, sigma * y, sigma * random.Normal());
+    };
+    if (kArrangement == Arrangement::kHeldHandEye) {
+      data.hand_eye = robot.truth.flange_from_scanner;
+      return robot;
+    }
+    data.spheres = {{"A", Eigen::Vector3d(0, 0, 0)}};
+    if (kArrangement == Arrangement::kReflectors)
+      data.spheres.insert(data.spheres.end(), {{"B", Eigen::Vector3d(80, 0, 0)}, {"C", Eigen::Vector3d(0, 60, 20)}});
+    data.measured_in_world = kArrangement != Arrangement::kOneBall;
+    if (data.measured_in_world) {  // a single reflector says nothing of the tool's turn, which is zero
+      robot.truth.flange_from_scanner = kArrangement == Arrangement::kOneReflector
+                                            ? PoseOf({30, -20, 90, 0, 0, 0})
+                                            : PoseOf({30, -20, 90, 0.1, -0.2, 0.3});
+      robot.base_from_artifact = {PoseOf({2500, 300, 800, 0.1, 0.2, -2})};
+      for (size_t s = 1; s < data.stations.size(); ++s)
+        data.stations[0].views.insert(data.stations[0].views.end(), data.stations[s].views.begin(),
+                                      data.stations[s].views.end());
+      data.stations.resize(1);
+    }
+    std::vector<Eigen::Vector3d> points;
+    for (const Model::Sphere& sphere : data.spheres) points.emplace_back(sphere.centre + draw(scene.u_spheres));
+    const Kinematics flange{Eigen::Isometry3d::Identity(), robot.truth.link_errors};
+    for (size_t s = 0; s < data.stations.size(); ++s) {
+      const Eigen::Isometry3d& world = robot.base_from_artifact[s];
+      for (Model::View& view : data.stations[s].views) {
+        Eigen::Isometry3d moved = BaseFromScanner(data, flange, view);
+        moved.translation() += draw(scene.repeatability);
+        const Eigen::Vector3d tilt = draw(scene.repeatability_rotation);
+        if (tilt.norm() > 0) moved.linear() = Eigen::AngleAxisd(tilt.norm(), tilt.normalized()) * moved.linear();
+        const Eigen::Isometry3d tool = moved * robot.truth.flange_from_scanner;
+        view.balls.clear();
+        for (size_t k = 0; k < points.size(); ++k) {
+          Model::SeenBall& seen = view.balls.emplace_back();
+          seen.sphere = static_cast<int>(k);
+          seen.centre =
+              data.measured_in_world ? world.inverse() * (tool * points[k]) : tool.inverse() * (world * points[k]);
+          seen.centre += draw(scene.ball_noise);
+        }
+      }
+    }
+    return robot;
+  }
+  static ContractData Make(const ContractOptions& options) { return MakeOf(options, Robot(options)); }
+  static Eigen::VectorXd RoundTrip(double noise) { return RoundTripOf(Robot({noise, 1, true, false, false})); }
+  static std::string Refusal() { return RefusalOf(Robot({})); }
+};
+
 INSTANTIATE_TYPED_TEST_SUITE_P(Robot, ModelContract, RobotCase);
+using Arrangements =
+    ::testing::Types<ArrangedCase<Arrangement::kOneBall>, ArrangedCase<Arrangement::kReflectors>,
+                     ArrangedCase<Arrangement::kOneReflector>, ArrangedCase<Arrangement::kHeldHandEye>>;
+INSTANTIATE_TYPED_TEST_SUITE_P(RobotArranged, ModelContract, Arrangements);
 
 TEST(RobotBallTest, DenseAndSparseEliminationAgree) {
   ContractOptions options;
