@@ -1,6 +1,7 @@
 #include "solver/calibrate.h"
 #include <algorithm>
 #include <cmath>
+#include "solver/dense.h"
 #include "solver/uncertainty/budget.h"
 #include "solver/uncertainty/gum.h"
 #include "solver/uncertainty/jackknife.h"
@@ -29,6 +30,52 @@ BudgetLine Line(const Problem& problem, const Contribution& contribution, bool f
   return {};
 }
 
+constexpr Message<> kViewsScatter{"solver.views_scatter", "scatter of views beyond their noise",
+                                  "Streuung der Ansichten über ihr Rauschen hinaus"};
+constexpr Message<std::string_view, double, double> kViewsScatterMore{
+    "solver.views_scatter_more",
+    "{}: from view to view the residuals scatter {:.2g} times as much as noise and declarations explain (p = {:.1g}): "
+    "views are not alike, or the model lacks something; u allows for it",
+    "{}: Von Ansicht zu Ansicht streuen die Residuen {:.2g}-mal so stark, wie Rauschen und Angaben es erklären (p = "
+    "{:.1g}): Die Ansichten sind nicht gleich gut, oder dem Modell fehlt etwas; u berücksichtigt dies"};
+
+// What of the clustered covariance the headline lacks, if chance does not explain it.
+void AddScatterOfViews(const Solution& solution, const Covariance& clustered, Headline* headline) {
+  constexpr double kChance = 1e-3;
+  const Eigen::VectorXd dof = DofOfClusters(solution.problem, solution.linear);
+  const Eigen::Index n = dof.size();
+  double least = 1;
+  Eigen::Index worst = 0;
+  const auto ratio = [&](Eigen::Index k) { return clustered.matrix(k, k) / headline->covariance(k, k); };
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (!(dof[k] >= 1) || !(ratio(k) > 1)) continue;
+    const double p = std::min(1.0, static_cast<double>(n) * FUpperTail(ratio(k), dof[k], headline->dof[k]));
+    if (p < least) {
+      least = p;
+      worst = k;
+    }
+  }
+  if (!(least < kChance)) return;
+  const Eigen::VectorXd u = headline->covariance.diagonal().cwiseSqrt();
+  const SymmetricEigen eigen = EigenOf(u.cwiseInverse().asDiagonal() * (clustered.matrix - headline->covariance) *
+                                       u.cwiseInverse().asDiagonal());
+  const Eigen::MatrixXd lacking = u.asDiagonal() * eigen.vectors * eigen.values.cwiseMax(0).asDiagonal() *
+                                  eigen.vectors.transpose() * u.asDiagonal();
+  std::string which;
+  Eigen::Index e = 0;
+  for (const Quantity& quantity : solution.problem.quantities)
+    if (quantity.scope == Scope::kSystem && quantity.role == Role::kEstimate && e++ == worst) which = quantity.name;
+  headline->warnings.push_back(Say(kViewsScatterMore, which, std::sqrt(ratio(worst)), least));
+  for (Eigen::Index k = 0; k < n; ++k) {  // Welch-Satterthwaite, GUM G.4
+    const double before = headline->covariance(k, k), more = lacking(k, k);
+    headline->dof[k] =
+        std::pow(before + more, 2) / (before * before / headline->dof[k] + more * more / std::max(1.0, dof[k]));
+  }
+  headline->covariance += lacking;
+  headline->budget.push_back(Line(Say(kViewsScatter), 'A', Unit::kMm, 0, Eigen::VectorXd(), lacking, dof.minCoeff()));
+  headline->budget.back().random = true;
+}
+
 void AddShares(Headline* headline) {
   for (BudgetLine& line : headline->budget)
     for (size_t k = 0; k < line.contribution.size(); ++k) {
@@ -38,7 +85,7 @@ void AddShares(Headline* headline) {
 }
 
 Headline Weighted(const Problem& problem, const Variances& variances, const Budget& budget, Eigen::Index n) {
-  Headline headline{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd(n), {}};
+  Headline headline{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd(n), {}, {}};
   std::vector<Eigen::VectorXd> shares(n, Eigen::VectorXd::Zero(std::ssize(variances.sources)));
   for (const Contribution& contribution : budget.lines) {
     headline.covariance += contribution.covariance;
@@ -57,7 +104,7 @@ Headline Weighted(const Problem& problem, const Variances& variances, const Budg
 }
 
 Headline Clustered(const Problem& problem, const Covariance& clustered, const Budget& budget, Eigen::Index n) {
-  Headline headline{clustered.matrix, Eigen::VectorXd(n), {}};
+  Headline headline{clustered.matrix, Eigen::VectorXd(n), {}, {}};
   headline.budget.push_back(
       Line(Say(kClusteredByView), 'A', Unit::kMm, 0, Eigen::VectorXd(), clustered.matrix, clustered.dof));
   for (const Contribution& contribution : budget.lines) {
@@ -185,6 +232,7 @@ Headline HeadlineOf(const Solution& solution, const Covariance& clustered) {
   Headline headline = solution.variances ? Weighted(solution.problem, *solution.variances, budget, n)
                                          : Clustered(solution.problem, clustered, budget, n);
   headline.covariance = (headline.covariance + headline.covariance.transpose().eval()) / 2;
+  if (solution.variances) AddScatterOfViews(solution, clustered, &headline);
   AddShares(&headline);
   return headline;
 }
@@ -241,6 +289,7 @@ Calibration Summarize(const Solution& solution, const PureError& pure_error) {
   AddParameters(solution, headline, clustered, jackknife, &result);
   AddTargets(solution, pure_error, &result);
   AddInfluences(solution, &result);
+  result.warnings = headline.warnings;
   if (!solution.variances) result.budget.front().u = result.sigma;
   // Views of many rows tell the variances better than their mere number.
   const double noise_dof = solution.variances && headline.dof.size() > 0

@@ -43,11 +43,13 @@ struct Headline {
   Eigen::MatrixXd covariance;  // of the system's estimated quantities
   Eigen::VectorXd dof;         // effective degrees of freedom of each variance (Welch-Satterthwaite, GUM G.4)
   std::vector<BudgetLine> budget;
+  std::vector<Sentence> warnings;
 };
 
 // Weighted fits: K V K' with everything random, declared or estimated, and everything that was considered; the
-// estimated variances are one block in the degrees of freedom. Equal weights: what the residuals show between views
-// (clustered), and what cannot show there because views share it.
+// estimated variances are one block in the degrees of freedom. Where the residuals show more between views than all of
+// that explains (clustered, by its F test, p < 0.001 after Bonferroni), what is lacking is a line of its own. Equal
+// weights: what the residuals show between views (clustered), and what cannot show there because views share it.
 Headline HeadlineOf(const Solution& solution, const Covariance& clustered);
 
 // Numbers of a solution: parameters with all their uncertainties, covariance, budget, lack of fit, jackknife. u is

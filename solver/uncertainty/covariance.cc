@@ -56,6 +56,22 @@ std::vector<TargetScores> ScoresByTarget(const Problem& problem, const Lineariza
   return scores;
 }
 
+Eigen::VectorXd DofOfClusters(const Problem& problem, const Linearization& linear) {
+  const Eigen::MatrixXd inverse = InverseInformation(linear);
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(inverse.rows()), squares = sum;
+  for (size_t t = 0; t < problem.targets.size(); ++t) {
+    const LinearTarget& target = linear.targets[t];
+    for (size_t v = 0; v < problem.targets[t].views.size(); ++v) {
+      if (!problem.targets[t].views[v].prior.empty()) continue;
+      const auto j = target.system_left.middleRows(target.first[v], problem.targets[t].views[v].size());
+      const Eigen::ArrayXd g = (inverse * j.transpose()).rowwise().squaredNorm();
+      sum += g;
+      squares += g.square();
+    }
+  }
+  return (squares > 0).select(sum.square() / squares.max(1e-300), 0.0);
+}
+
 Covariance ClusteredCovariance(const Problem& problem, const Linearization& linear) {
   const Eigen::MatrixXd inverse = InverseInformation(linear);
   Eigen::MatrixXd meat = 0 * inverse;

@@ -27,6 +27,10 @@ Covariance NaiveCovariance(const Problem& problem, const Linearization& linear);
 // enter with their own unit noise, not their residual. dof: clusters minus quantities. linear: of the views.
 Covariance ClusteredCovariance(const Problem& problem, const Linearization& linear);
 
+// Degrees of freedom of each variance of the clustered covariance, as it would be of the noise that the problem is
+// weighed with: (sum g)^2 / sum g^2 over the clusters, g what each contributes (Satterthwaite 1946).
+Eigen::VectorXd DofOfClusters(const Problem& problem, const Linearization& linear);
+
 // Per target, last the priors: J'J of the system, and the sum over its clusters of g_c g_c'.
 struct TargetScores {
   Eigen::MatrixXd information, meat;

@@ -145,6 +145,46 @@ TEST(Summarize, CountsAPriorOfATargetOnce) {  // it is a cluster of the clustere
   EXPECT_NEAR(result.Find("slope")->u, result.Find("slope")->u_clustered, 1e-15);
 }
 
+// Views of a line's ends that are noisier than the others, which the one variance of all does not say.
+TEST(Summarize, TakesWhatViewsShowBeyondTheirNoise) {
+  constexpr int kTrials = 300;
+  for (const double worse : {1.0, 4.0}) {
+    double squares = 0, stated = 0, without = 0;
+    int said = 0;
+    for (int trial = 1; trial <= kTrials; ++trial) {
+      LineScene scene;
+      scene.views = 100;
+      scene.seed = static_cast<uint64_t>(trial);
+      auto lines = scene.Make();
+      Random random(scene.seed, 5);
+      for (LineModel::Target& line : lines)
+        for (int v = 0; v < scene.views; ++v)
+          if (v < 10 || v >= scene.views - 10)
+            for (double& y : line.views[static_cast<size_t>(v)].y)
+              y += std::sqrt(worse * worse - 1) * scene.noise * random.Normal();
+      LineModel model;
+      model.quantity(LineModel::kNoise).role = Role::kEstimate;
+      Problem problem = MakeProblem<LineModel>(std::make_shared<LineModel>(model), std::move(lines));
+      const Estimate start = NominalStart(problem);
+      const Solution solution = SolveWeighted(Solve(std::move(problem), start), 1e-9);
+      const Calibration result = Summarize(solution, {});
+      const Parameter& slope = *result.Find("slope");
+      squares += std::pow(slope.value - scene.slope, 2) / kTrials;
+      stated += slope.u * slope.u / kTrials;
+      without += InverseInformation(solution.linear)(0, 0) / kTrials;
+      said += !result.warnings.empty() && result.warnings[0].english.find("from view to view") != std::string::npos;
+    }
+    const double tolerance = 4 * std::sqrt(2.0 / kTrials);
+    EXPECT_NEAR(stated / squares, 1, tolerance);
+    if (worse > 1) {
+      EXPECT_GE(said, 0.95 * kTrials);
+      EXPECT_LT(without / squares, 1 - tolerance);
+    } else {
+      EXPECT_LE(said, 3);  // of 300, each with a chance of 1e-3
+    }
+  }
+}
+
 TEST(CoverageFactor, IsStudentsT) {  // GUM table G.2
   EXPECT_NEAR(CoverageFactor(0.95, 1), 12.71, 0.005);
   EXPECT_NEAR(CoverageFactor(0.95, 4), 2.78, 0.005);
