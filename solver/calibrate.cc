@@ -30,6 +30,8 @@ BudgetLine Line(const Problem& problem, const Contribution& contribution, bool f
   return {};
 }
 
+constexpr double kKnown_dof = 1e9;  // as good as infinitely many
+
 constexpr Message<> kViewsScatter{"solver.views_scatter", "scatter of views beyond their noise",
                                   "Streuung der Ansichten über ihr Rauschen hinaus"};
 constexpr Message<std::string_view, double, double> kViewsScatterMore{
@@ -49,7 +51,8 @@ void AddScatterOfViews(const Solution& solution, const Covariance& clustered, He
   const auto ratio = [&](Eigen::Index k) { return clustered.matrix(k, k) / headline->covariance(k, k); };
   for (Eigen::Index k = 0; k < n; ++k) {
     if (!(dof[k] >= 1) || !(ratio(k) > 1)) continue;
-    const double p = std::min(1.0, static_cast<double>(n) * FUpperTail(ratio(k), dof[k], headline->dof[k]));
+    const double p =
+        std::min(1.0, static_cast<double>(n) * FUpperTail(ratio(k), dof[k], std::min(headline->dof[k], kKnown_dof)));
     if (p < least) {
       least = p;
       worst = k;
@@ -117,7 +120,6 @@ Headline Clustered(const Problem& problem, const Covariance& clustered, const Bu
   return headline;
 }
 
-constexpr double kKnown_dof = 1e9;     // as good as infinitely many
 constexpr double kRounding_mm = 1e-9;  // a pure error below this is none
 
 double DataSumOfSquares(const Solution& solution, size_t target) {
