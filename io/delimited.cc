@@ -55,6 +55,12 @@ bool IsWithoutCells(std::string_view line) {
 
 }  // namespace
 
+bool CellIs(const std::string& cell, const std::string& value, const Dialect& dialect) {
+  const ParsedNumber found = ParseNumber(cell), wanted = ParseNumber(value);
+  if (found.kind == NumberKind::kNumber && wanted.kind == NumberKind::kNumber) return found.value == wanted.value;
+  return dialect.Original(cell) == value;
+}
+
 TextLines::TextLines(DecodedFile file)
     : file_(std::move(file)),
       buffer_(kBlock + 1),
@@ -73,7 +79,7 @@ Result<TextLines> TextLines::Open(const std::filesystem::path& path) {
 Result<void> TextLines::CheckEncoding() {
   const std::string_view text(begin_, static_cast<size_t>(filled_end_ - begin_));
   if (text.substr(0, 4096).find('\0') != std::string_view::npos) {
-    return Error{name() + ": found binary data, expected text with commas"};
+    return Error{name() + ": found binary data, expected text with commas", ErrorKind::kUnknownLayout};
   }
   const auto mark_size = static_cast<std::ptrdiff_t>(text.size() - WithoutByteOrderMark(text).size());
   begin_ += mark_size;
@@ -199,10 +205,7 @@ bool DelimitedText::IsUnwanted() const {
   const std::vector<std::string> cells = SplitCells(Line());
   return std::any_of(where_.begin(), where_.end(), [&](const auto& each) {
     if (each.first >= cells.size()) return true;
-    const std::string& cell = cells[each.first];
-    const ParsedNumber found = ParseNumber(cell), wanted = ParseNumber(each.second);
-    const bool numbers = found.kind == NumberKind::kNumber && wanted.kind == NumberKind::kNumber;
-    return numbers ? found.value != wanted.value : head_.dialect.Original(cell) != each.second;
+    return !CellIs(cells[each.first], each.second, head_.dialect);
   });
 }
 

@@ -62,6 +62,9 @@ struct ExpectedCells {  // of a column
   std::string name = {};  // for messages
 };
 
+// A cell, unquoted, says this: as numbers if both are, else as text.
+bool CellIs(const std::string& cell, const std::string& value, const Dialect& dialect = {});
+
 // How many cells a row has, and what is told if a number in it is wrong as well.
 enum class CellCount {
   kFirst,  // one for each column; their count: the line is cut off, or has other separators

@@ -1,20 +1,14 @@
 // Angles as a controller logs them: counts of an encoder, a time at constant speed, or none but a constant step.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <utility>
+#include "io/message.h"
 #include "io/scan.h"
 
 namespace scancal {
 namespace {
-
-std::string Plainly(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", number);
-  return text;
-}
 
 class LoggedAngleReader : public ScanReader {
  public:
@@ -115,6 +109,15 @@ class LoggedAngleReader : public ScanReader {
 };
 
 }  // namespace
+
+Result<bool> AnglesByProfile(const ScanFormat& format) {
+  const auto angle = format.names.find("angle");
+  const bool by_profile = angle != format.names.end() && angle->second == "profile";
+  if (by_profile || format.wants_angles_from_steps) return by_profile;
+  return Error{format.path.string() + ": layout: a file with a profile a " +
+               (format.layout && format.layout->tall ? "column" : "row") +
+               " has no angles; add angle: {start: ..., step: ...}, or {file: ..., by: profile, column: ...}"};
+}
 
 LoggedAngle ReadLoggedAngle(YamlMap map, const std::filesystem::path& folder, const Units& units) {
   LoggedAngle angle;

@@ -1,5 +1,6 @@
 #include "io/message.h"
 #include <algorithm>
+#include <cstdio>
 #include <iterator>
 #include <numeric>
 #include <system_error>
@@ -117,6 +118,12 @@ std::string Suggestion(std::string_view word, const std::vector<std::string>& kn
   const std::string nearest = Nearest(word, known);
   if (!nearest.empty()) return ", did you mean '" + nearest + "'?";
   return known.empty() ? "" : "; expected one of: " + Listed(known);
+}
+
+std::string Plainly(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", number);
+  return text;
 }
 
 std::string SystemMessage(int error_number) { return std::generic_category().message(error_number); }

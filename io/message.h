@@ -20,6 +20,8 @@ std::string Nearest(std::string_view word, const std::vector<std::string>& candi
 // ", did you mean 'search'?", or "; expected one of: a, b, c" if none is near; empty if nothing is known.
 std::string Suggestion(std::string_view word, const std::vector<std::string>& known);
 
+std::string Plainly(double number);  // nine digits, without trailing zeros: 0.05
+
 std::string SystemMessage(int error_number);  // No such file or directory
 
 std::optional<size_t> FirstInvalidUtf8(std::string_view text);  // offset of the first byte that is not UTF-8

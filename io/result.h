@@ -10,7 +10,7 @@ namespace scancal {
 // What the world did wrong (a file, a flag, a scene), in words for the person who can mend it.
 // Our own mistakes are CHECKs; unhappy numbers are a field of the Calibration. kind: what a caller may act on; nobody
 // compares messages.
-enum class ErrorKind { kOther, kMissingColumns };
+enum class ErrorKind { kOther, kMissingColumns, kUnknownLayout };
 
 struct Error {
   std::string message;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <utility>
+#include "io/file_kind.h"
 #include "io/message.h"
 
 namespace scancal {
@@ -153,6 +154,10 @@ Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const 
 }
 
 void ReadFormat(YamlMap map, const std::filesystem::path& folder, ScanFormat* format) {
+  if (map.Has("format")) {
+    format->kind = map.Text("format");
+    if (!NamedFileKind(format->kind)) map.Fail("format", "expected one of " + Listed(FileKindNames()));
+  }
   if (map.IsMap("columns")) {
     YamlMap names = map.Map("columns");
     for (const std::string& name : names.Keys()) {
@@ -198,8 +203,11 @@ int ScanBatch::Find(std::string_view name) const {
 
 Result<std::unique_ptr<ScanReader>> ScanReader::Open(const ScanFormat& format) {
   if (format.angle) return OpenLogged(format);
+  if (const FileKind* const kind = FindFileKind(format)) return kind->open(format);
   if (format.layout) return OpenWideCsv(format);
-  return IsNpy(format.path) ? OpenNpy(format) : OpenCsv(format);
+  auto reader = IsNpy(format.path) ? OpenNpy(format) : OpenCsv(format);
+  if (reader.ok() || reader.error().kind != ErrorKind::kUnknownLayout) return reader;
+  return Error{reader.error().message + TriedFileKinds(), ErrorKind::kUnknownLayout};
 }
 
 }  // namespace scancal

@@ -32,6 +32,9 @@ struct WideLayout {              // one profile per line; tall: one per column
   double start = 0, step = 1;    // of `across`, declared unit
   bool tall = false;             // angle_column has `across` instead, and angles come from LoggedAngle
   double scale = 1, offset = 0;  // a cell's number times this and plus that is in the declared unit
+  bool image = false;            // cells alone, a profile a row
+  std::string echo = {};         // what is to be said of it
+  bool HasNoAngles() const { return tall || angle_column == 0; }
 };
 
 // How a file says the angle of a profile where no column has it.
@@ -50,6 +53,7 @@ struct LoggedAngle {
 
 struct ScanFormat {  // how one scan file is to be read, as the data set declares it
   std::filesystem::path path;
+  std::string kind;                              // a FileKind's name; empty: told from the content
   Units units;                                   // a unit suffix of a column's name (angle_deg, y_mm) wins
   std::vector<ScanColumn> columns;               // wanted; others in the file are ignored
   std::vector<std::vector<std::string>> one_of;  // of these groups the file needs one whole; empty: any will do
@@ -72,14 +76,14 @@ struct ScanBatch {                           // equally long columns, in the ord
   int Find(std::string_view name) const;  // index, or -1
 };
 
-// What a data set, or a target of its own, says of its files: `columns`, `angle`, `invalid`, `text` and `where`.
+// What a data set, or a target of its own, says of its files: `format`, `columns`, `angle`, `invalid`, `text`, `where`.
 // folder: where a file of angles counts from.
 void ReadFormat(YamlMap map, const std::filesystem::path& folder, ScanFormat* format);
 
 // Delimited text in any dialect (FindHead), the same with a profile a line (layout), .npy (float64 | float32, C order,
-// shape (points, columns)); by layout, then extension. Missing points (empty, nan, `invalid` in a wanted column) are
-// left out and counted. inf, text, overflow, a wrong number of fields are errors: "left.csv:1042:8: y: found "12.3.4",
-// expected a number".
+// shape (points, columns)), what instruments write (FindFileKind); by content, layout, then extension. Missing points
+// (empty, nan, `invalid` in a wanted column) are left out and counted. inf, text, overflow, a wrong number of fields
+// are errors: "left.csv:1042:8: y: found "12.3.4", expected a number".
 class ScanReader {
  public:
   static Result<std::unique_ptr<ScanReader>> Open(const ScanFormat& format);
@@ -104,6 +108,9 @@ Result<std::unique_ptr<ScanReader>> OpenWideCsv(const ScanFormat& format);
 Result<std::unique_ptr<ScanReader>> OpenNpy(const ScanFormat& format);
 // Any of them, with the angles of format.angle.
 Result<std::unique_ptr<ScanReader>> OpenLogged(const ScanFormat& format);
+// Of a file that has profiles without angles: whether they are joined by the number of the profile (else they come from
+// steps); neither is an error.
+Result<bool> AnglesByProfile(const ScanFormat& format);
 LoggedAngle ReadLoggedAngle(YamlMap map, const std::filesystem::path& folder,
                             const Units& units);  // {column: Encoder, counts_per_turn: 36000, zero: 1200}
 

@@ -1,10 +1,9 @@
 // Scans in delimited text: a point or a profile per line.
+#include "io/scan_csv.h"
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <utility>
-#include "io/delimited.h"
-#include "io/scan.h"
 
 namespace scancal {
 namespace {
@@ -22,55 +21,6 @@ bool IsWithoutNames(const std::vector<std::string>& header) {
   }
   return any_number;
 }
-
-class CsvReader : public ScanReader {
- public:
-  CsvReader(const ScanFormat& format, DelimitedText text)
-      : format_(format),
-        text_(std::move(text)),
-        invalid_(format.invalid.value_or(std::numeric_limits<double>::infinity())) {}
-  int64_t bytes_read() const override { return text_.bytes_read(); }
-  int64_t bytes_total() const override { return text_.bytes_total(); }
-  std::string Describe() const override { return text_.Describe(); }
-
- protected:
-  // From here on only the wanted lines.
-  void KeepLines() {
-    if (format_.lines) text_.KeepLines(format_.lines->first, format_.lines->second);
-  }
-  // Neither below nor above it: equal, or nan.
-  bool IsMissing(double number) const {
-    return !std::islessgreater(number, invalid_) ||
-           (!format_.more_invalid.empty() &&
-            std::count(format_.more_invalid.begin(), format_.more_invalid.end(), number));
-  }
-  Result<void> KeepWhere(const std::vector<std::string>& header) {
-    std::vector<std::pair<size_t, std::string>> where;
-    for (const auto& [name, value] : format_.text.where) {
-      ScanFormat only;
-      only.columns = {{name, Dimension::kNone}};
-      const auto column = ChooseColumns(only, header, text_.Place() + ": where");
-      if (!column.ok()) return column.error();
-      where.emplace_back(column->front().index, value);
-    }
-    text_.KeepWhere(std::move(where));
-    return {};
-  }
-
-  // There were points, or none at all at the end of the file is an error.
-  Result<bool> Taken(size_t points) {
-    any_point_ |= points > 0;
-    if (!any_point_ && missing_ == 0) return NoPoints(format_, text_.line());
-    return points > 0;
-  }
-
-  const ScanFormat format_;
-  DelimitedText text_;
-
- private:
-  double invalid_;  // infinite if there is none: numbers of the file are finite
-  bool any_point_ = false;
-};
 
 // A point per line, a header with names.
 class LongReader : public CsvReader {
@@ -95,7 +45,8 @@ class LongReader : public CsvReader {
     std::vector<std::string> header = head.is_known && head.is_nameless ? format_.npy_columns : head.names;
     if (!head.is_known && IsWithoutNames(header))
       return Error{text_.Place() + ": found numbers, expected a header line with the names of the columns; or " +
-                   "columns: [angle, y, z] in the data set, in the order of the file" + text_.WrongSeparator()};
+                       "columns: [angle, y, z] in the data set, in the order of the file" + text_.WrongSeparator(),
+                   ErrorKind::kUnknownLayout};
     auto chosen = ChooseColumns(format_, header, text_.Place(), head.units);
     if (!chosen.ok()) return Error{chosen.error().message + text_.WrongSeparator(), chosen.error().kind};
     columns_ = *std::move(chosen);
@@ -152,11 +103,15 @@ class WideReader : public CsvReader {
         value_factor_(format.units.Of(ColumnOf(layout_.value).dimension)) {}
 
   std::optional<double> FirstProfile() const override { return first_profile_; }
+  std::string Describe() const override {
+    const std::string text = CsvReader::Describe();
+    return text + (text.empty() || layout_.echo.empty() ? "" : ", ") + layout_.echo;
+  }
 
   Result<void> ReadHeader() {
-    if (layout_.tall && !format_.wants_angles_from_steps)
-      return Error{text_.name() +
-                   ": layout: a file with a profile a column has no angles; add angle: {start: ..., step: ...}"};
+    if (layout_.HasNoAngles()) {
+      SCANCAL_ASSIGN_OR_RETURN(by_profile_, AnglesByProfile(format_));
+    }
     if (layout_.angle_column < 0 || layout_.angle_column >= layout_.first_column)
       return Error{text_.name() + ": layout: found angle_column: " + std::to_string(layout_.angle_column) +
                    ", first_column: " + std::to_string(layout_.first_column) +
@@ -208,11 +163,11 @@ class WideReader : public CsvReader {
       if (!first_profile_) first_profile_ = layout_.tall ? 1 : profile;
       for (size_t k = first_; k < cells_; ++k) {
         const double value = text_.Number(k);
-        targets[0][points] = angle * angle_factor_;
         const auto number = static_cast<double>(k - first_);
         targets[1][points] = (layout_.tall ? across : layout_.start + layout_.step * number) * across_factor_;
         targets[2][points] = (layout_.scale * value + layout_.offset) * value_factor_;
         targets[3][points] = layout_.tall ? 1 + number : profile;
+        targets[0][points] = by_profile_ ? targets[3][points] : angle * angle_factor_;
         if (!no_angle && !IsMissing(value)) ++points;
       }
       missing_ += static_cast<int64_t>(most - points);
@@ -250,24 +205,16 @@ class WideReader : public CsvReader {
   }
 
   const WideLayout layout_;
-  bool has_angle_;
+  bool has_angle_, by_profile_ = false;
   std::optional<double> first_profile_;
   size_t angle_, first_;  // columns, 0-based
   double angle_factor_, across_factor_, value_factor_;
   size_t cells_ = 0;  // of every row
 };
 
-template <class Reader>
-Result<std::unique_ptr<ScanReader>> OpenAs(const ScanFormat& format) {
-  SCANCAL_ASSIGN_OR_RETURN(DelimitedText text, DelimitedText::Open(format.path));
-  auto reader = std::make_unique<Reader>(format, std::move(text));
-  SCANCAL_RETURN_IF_ERROR(reader->ReadHeader());
-  return std::unique_ptr<ScanReader>(std::move(reader));
-}
-
 }  // namespace
 
-Result<std::unique_ptr<ScanReader>> OpenCsv(const ScanFormat& format) { return OpenAs<LongReader>(format); }
-Result<std::unique_ptr<ScanReader>> OpenWideCsv(const ScanFormat& format) { return OpenAs<WideReader>(format); }
+Result<std::unique_ptr<ScanReader>> OpenCsv(const ScanFormat& format) { return OpenText<LongReader>(format); }
+Result<std::unique_ptr<ScanReader>> OpenWideCsv(const ScanFormat& format) { return OpenText<WideReader>(format); }
 
 }  // namespace scancal

@@ -34,7 +34,8 @@ std::optional<WideLayout> ReadLayout(YamlMap map) {
   YamlMap layout = map.Map("layout");
   WideLayout wide;
   wide.tall = layout.Has("tall");
-  const char* const kind = wide.tall ? "tall" : "wide";
+  wide.image = !wide.tall && layout.Has("image");
+  const char* const kind = wide.tall ? "tall" : wide.image ? "image" : "wide";
   wide.value = layout.Text(kind);
   if (wide.value != "y" && wide.value != "range") layout.Fail(kind, "expected y or range");
   wide.across = wide.value == "range" ? "bearing" : "z";
@@ -44,8 +45,8 @@ std::optional<WideLayout> ReadLayout(YamlMap map) {
     layout.Fail(key, "expected a column number, 1 or more");
     return otherwise;
   };
-  wide.angle_column = column(wide.tall ? "across_column" : "angle_column", 1);
-  wide.first_column = column("first_column", 2);
+  wide.angle_column = wide.image ? 0 : column(wide.tall ? "across_column" : "angle_column", 1);
+  wide.first_column = wide.image ? 1 : column("first_column", 2);
   wide.scale = layout.Number("scale", 1);
   wide.offset = layout.Number("offset", 0);
   if (wide.scale == 0) layout.Fail("scale", "expected what a cell's number is to be multiplied by, not 0");

@@ -84,6 +84,31 @@ inline void ReadAsArray(std::string_view bytes) {
   std::filesystem::remove(link, ignored);
 }
 
+// Files of an instrument; the first byte as in ReadAsScan.
+inline void ReadAsKind(std::string_view bytes, const char* kind) {
+  if (bytes.empty()) return;
+  const auto choice = static_cast<unsigned char>(bytes[0]);
+  const FileOf file(bytes.substr(1));
+  ScanFormat format;
+  format.path = file.path();
+  if (choice & 1U) format.kind = kind;
+  format.columns = {{"angle", Dimension::kAngle},
+                    {"y", Dimension::kLength, false},
+                    {"z", Dimension::kLength, false},
+                    {"profile", Dimension::kNone, false}};
+  if (choice & 2U)
+    format.layout = WideLayout{
+        .value = "y", .across = "z", .angle_column = 0, .first_column = 1, .start = -1, .step = 0.5, .image = true};
+  if (choice & 8U) format.text.where = {{"Source", "0"}};
+  if (choice & 16U)
+    format.angle = LoggedAngle{.column = "Encoder", .is_step = (choice & 32U) != 0, .first = {}, .echo = {}};
+  if (choice & 128U) format.lines = {2, 20};
+  ReadToItsEnd(format);
+}
+inline void ReadAsGocator(std::string_view bytes) { ReadAsKind(bytes, "gocator"); }
+inline void ReadAsLjV(std::string_view bytes) { ReadAsKind(bytes, "lj-v"); }
+inline void ReadAsLjX(std::string_view bytes) { ReadAsKind(bytes, "lj-x"); }
+
 inline void ReadAsDeclaration(std::string_view bytes) {
   auto dataset = ParseDataset(std::string(bytes), "dataset.yaml", "dataset.yaml");
   if (!dataset.ok()) return;
@@ -103,10 +128,9 @@ struct FuzzedReader {
   const char* name;
   void (*read)(std::string_view bytes);
 };
-inline constexpr FuzzedReader kFuzzedReaders[] = {{"scan", &ReadAsScan},
-                                                  {"table", &ReadAsTable},
-                                                  {"array", &ReadAsArray},
-                                                  {"declaration", &ReadAsDeclaration},
-                                                  {"result", &ReadAsResult}};
+inline constexpr FuzzedReader kFuzzedReaders[] = {{"scan", &ReadAsScan},     {"table", &ReadAsTable},
+                                                  {"array", &ReadAsArray},   {"declaration", &ReadAsDeclaration},
+                                                  {"result", &ReadAsResult}, {"gocator", &ReadAsGocator},
+                                                  {"ljv", &ReadAsLjV},       {"ljx", &ReadAsLjX}};
 
 }  // namespace scancal

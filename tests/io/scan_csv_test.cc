@@ -15,6 +15,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::StartsWith;
 
 class ScanCsvTest : public ::testing::Test {
  protected:
@@ -227,10 +228,11 @@ TEST_F(ScanCsvTest, AColumnTwiceIsAnError) {
 }
 
 TEST_F(ScanCsvTest, NumbersWithoutHeaderAreAnError) {
-  EXPECT_EQ(
+  EXPECT_THAT(
       Read("1,2,3\n4,5,6\n").error,
-      Place(":1: found numbers, expected a header line with the names of the columns; or columns: [angle, y, z] in "
-            "the data set, in the order of the file"));
+      StartsWith(
+          Place(":1: found numbers, expected a header line with the names of the columns; or columns: [angle, y, z] in "
+                "the data set, in the order of the file; tried too: Gocator CSV, Keyence LJ-V profiles")));
 }
 
 TEST_F(ScanCsvTest, OtherSeparatorsThanTheHeadersAreAnErrorThatSaysSo) {
@@ -267,8 +269,8 @@ TEST_F(ScanCsvTest, AFolderIsAnError) {
 }
 
 TEST_F(ScanCsvTest, BinaryDataAreAnError) {
-  EXPECT_EQ(Read(std::string_view("\x01\x00\x02\x03", 4)).error,
-            Place(": found binary data, expected text with commas"));
+  EXPECT_THAT(Read(std::string_view("\x01\x00\x02\x03", 4)).error,
+              StartsWith(Place(": found binary data, expected text with commas; tried too: ")));
   EXPECT_THAT(Read(std::string_view("\xFF\xFE\x61\x00", 4)).error, HasSubstr("found the columns x, expected"));
 }
 

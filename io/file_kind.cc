@@ -1,0 +1,54 @@
+#include "io/file_kind.h"
+#include <algorithm>
+#include "io/decoded_file.h"
+#include "io/message.h"
+
+namespace scancal {
+namespace {
+
+constexpr size_t kSeen = size_t{1} << 18;
+const FileKind* const kKinds[] = {&kGocator, &kLjV, &kLjX};
+
+}  // namespace
+
+const FileKind* NamedFileKind(std::string_view name) {
+  const auto is_it = [&](const FileKind* kind) { return kind->name == name; };
+  const auto found = std::find_if(std::begin(kKinds), std::end(kKinds), is_it);
+  return found == std::end(kKinds) ? nullptr : *found;
+}
+
+std::vector<std::string> FileKindNames() {
+  std::vector<std::string> names;
+  for (const FileKind* kind : kKinds) names.emplace_back(kind->name);
+  return names;
+}
+
+std::string TriedFileKinds() {
+  std::vector<std::string> titles;
+  for (const FileKind* kind : kKinds) titles.emplace_back(kind->title);
+  return "; tried too: " + Listed(titles);
+}
+
+const FileKind* FindFileKind(const ScanFormat& format) {
+  if (!format.kind.empty()) return NamedFileKind(format.kind);
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(ArchiveOf(format.path), ignored)) return nullptr;  // a pipe is read once
+  auto file = DecodedFile::Open(format.path);
+  if (!file.ok()) return nullptr;  // who opens it next says why
+  std::string start(kSeen, '\0');
+  const auto count = file->Read(start.data(), start.size());
+  if (!count.ok()) return nullptr;
+  start.resize(*count);
+  const std::string_view text = WithoutByteOrderMark(start);
+  const auto is_it = [&](const FileKind* kind) { return kind->is_it(text, format); };
+  const auto found = std::find_if(std::begin(kKinds), std::end(kKinds), is_it);
+  return found == std::end(kKinds) ? nullptr : *found;
+}
+
+std::string_view TakeFirstLine(std::string_view* text) {
+  const std::string_view line = text->substr(0, text->find('\n'));
+  text->remove_prefix(std::min(text->size(), line.size() + 1));
+  return line.ends_with('\r') ? line.substr(0, line.size() - 1) : line;
+}
+
+}  // namespace scancal
