@@ -7,7 +7,7 @@ namespace scancal {
 namespace {
 
 constexpr size_t kSeen = size_t{1} << 18;
-const FileKind* const kKinds[] = {&kGocator, &kLjV, &kLjX};
+const FileKind* const kKinds[] = {&kGocator, &kLjV, &kLjX, &kHeightImage};
 
 }  // namespace
 
@@ -33,16 +33,20 @@ const FileKind* FindFileKind(const ScanFormat& format) {
   if (!format.kind.empty()) return NamedFileKind(format.kind);
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(ArchiveOf(format.path), ignored)) return nullptr;  // a pipe is read once
-  auto file = DecodedFile::Open(format.path);
-  if (!file.ok()) return nullptr;  // who opens it next says why
-  std::string start(kSeen, '\0');
-  const auto count = file->Read(start.data(), start.size());
-  if (!count.ok()) return nullptr;
-  start.resize(*count);
-  const std::string_view text = WithoutByteOrderMark(start);
+  const auto start = FirstBytes(format.path, kSeen);
+  if (!start.ok()) return nullptr;  // who opens it next says why
+  const std::string_view text = WithoutByteOrderMark(*start);
   const auto is_it = [&](const FileKind* kind) { return kind->is_it(text, format); };
   const auto found = std::find_if(std::begin(kKinds), std::end(kKinds), is_it);
   return found == std::end(kKinds) ? nullptr : *found;
+}
+
+Result<std::string> FirstBytes(const std::filesystem::path& path, size_t most) {
+  SCANCAL_ASSIGN_OR_RETURN(DecodedFile file, DecodedFile::Open(path));
+  std::string start(most, '\0');
+  SCANCAL_ASSIGN_OR_RETURN(const size_t count, file.Read(start.data(), start.size()));
+  start.resize(count);
+  return start;
 }
 
 std::string_view TakeFirstLine(std::string_view* text) {

@@ -1,5 +1,6 @@
 // The layouts of files that instruments write, told by their first bytes or named by `format:`.
 #pragma once
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -17,7 +18,7 @@ struct FileKind {
   Result<std::unique_ptr<ScanReader>> (*open)(const ScanFormat& format);
 };
 
-extern const FileKind kGocator, kLjV, kLjX;
+extern const FileKind kGocator, kLjV, kLjX, kHeightImage;
 
 // As `format:` names it, or as its content says; nullptr: none of them, a text or .npy with a column for each quantity.
 const FileKind* FindFileKind(const ScanFormat& format);
@@ -25,6 +26,10 @@ const FileKind* FindFileKind(const ScanFormat& format);
 const FileKind* NamedFileKind(std::string_view name);  // nullptr: there is none
 std::vector<std::string> FileKindNames();
 std::string TriedFileKinds();  // "; tried too: Gocator CSV, ..."
+
+Result<std::string> FirstBytes(const std::filesystem::path& path, size_t most);  // unpacked
+
+bool StartsAsImage(std::string_view start);  // .png or .npy
 
 // Of the first bytes; empty at their end.
 std::string_view TakeFirstLine(std::string_view* text);

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kLjVUnit_mm = 1e-5;         // 0.01 um
 constexpr double kLjVInvalid = -2147483648;  // 0x80000000, and the three that follow: why nothing was measured there
+constexpr double kLjXZero = 32768;
 constexpr std::string_view kLjXInvalid = "-99999.9999";
 
 std::optional<double> WholeNumber(std::string_view cell) {
@@ -61,12 +62,23 @@ bool IsLjX(std::string_view start, const ScanFormat& format) {
          (first.find(kLjXInvalid) != std::string_view::npos || start.find(kLjXInvalid) != std::string_view::npos);
 }
 
+// Height = (v - 32768) scale + offset, 0 where nothing was measured.
+Result<std::unique_ptr<ScanReader>> OpenLjXImage(const ScanFormat& format) {
+  ScanFormat file = format;
+  file.layout->offset -= kLjXZero * file.layout->scale;
+  file.layout->echo = "Keyence LJ-X heights, 32768 is 0, 0 missing";
+  file.more_invalid.push_back(0);
+  return kHeightImage.open(file);
+}
+
 // A profile a row, in mm.
 Result<std::unique_ptr<ScanReader>> OpenLjX(const ScanFormat& format) {
   if (!format.layout || !format.layout->image)
     return Error{format.path.string() +
                  ": the heights of a Keyence LJ-X say nothing of their places, expected layout: {image: y, start: ..., "
                  "step: ...}, along the line"};
+  SCANCAL_ASSIGN_OR_RETURN(const std::string start, FirstBytes(format.path, 16));
+  if (StartsAsImage(start)) return OpenLjXImage(format);
   ScanFormat file = format;
   const double unit = std::exchange(file.units.length_in_mm, 1);
   file.layout->start *= unit;

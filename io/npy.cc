@@ -17,12 +17,6 @@
 namespace scancal {
 namespace {
 
-struct NpyHeader {
-  std::string type;  // '<f8', '<f4'
-  int64_t rows = 0, columns = 0;
-  int64_t bytes = 0;  // of the header itself
-};
-
 constexpr std::string_view kMagic = "\x93NUMPY";
 
 // What follows 'key': in the dictionary, up to the comma behind it; commas inside brackets belong to it.
@@ -56,27 +50,31 @@ bool ParseShape(std::string_view shape, NpyHeader* header) {
   return parse(shape.substr(0, comma), &header->rows) && parse(shape.substr(comma + 1), &header->columns);
 }
 
-Result<NpyHeader> ParseDictionary(std::string_view dictionary, const std::string& name) {
+Result<NpyHeader> ParseDictionary(std::string_view dictionary, const std::string& name, bool image) {
   NpyHeader header;
   const std::string_view type = ValueOf(dictionary, "descr"), order = ValueOf(dictionary, "fortran_order"),
                          shape = ValueOf(dictionary, "shape");
-  if (type != "'<f8'" && type != "'<f4'") {
-    return Error{name + ": found the type " + Quoted(type) + ", expected '<f8' or '<f4'; save array.astype('<f8')"};
+  const bool whole = type == "'<u2'" || type == "'<i2'" || type == "'<i4'";
+  if (type != "'<f8'" && type != "'<f4'" && !(image && whole)) {
+    return Error{name + ": found the type " + Quoted(type) + ", expected '<f8'" +
+                 (image ? ", '<f4', '<u2', '<i2' or '<i4'" : " or '<f4'") + "; save array.astype('<f8')"};
   }
   if (order != "False") {
     return Error{name + ": found fortran_order: " + Quoted(order) +
                  ", expected False; save numpy.ascontiguousarray(array)"};
   }
   if (!ParseShape(shape, &header)) {
-    return Error{name + ": found the shape " + Quoted(shape) + ", expected (points, columns)"};
+    return Error{name + ": found the shape " + Quoted(shape) + ", expected " +
+                 (image ? "(rows, columns)" : "(points, columns)")};
   }
   header.type = type.substr(1, 3);
   return header;
 }
 
-// From the start of the file; leaves it at the first number. Anything but a two-dimensional array of float64 or float32
-// in C order: an error.
-Result<NpyHeader> ReadNpyHeader(InputFile& file) {
+}  // namespace
+
+Result<NpyHeader> ReadNpyHeader(InputFile* input, bool image) {
+  InputFile& file = *input;
   constexpr size_t kLongestHeader = 65536;
   unsigned char start[12] = {};  // magic, major, minor, length (2 bytes in version 1, 4 bytes later)
   SCANCAL_ASSIGN_OR_RETURN(size_t count, file.Read(reinterpret_cast<char*>(start), 10));
@@ -99,10 +97,26 @@ Result<NpyHeader> ReadNpyHeader(InputFile& file) {
   std::string dictionary(size, ' ');
   SCANCAL_ASSIGN_OR_RETURN(count, file.Read(dictionary.data(), size));
   if (count < size) return Error{file.name() + ": the file is cut off in its header"};
-  SCANCAL_ASSIGN_OR_RETURN(NpyHeader header, ParseDictionary(dictionary, file.name()));
+  SCANCAL_ASSIGN_OR_RETURN(NpyHeader header, ParseDictionary(dictionary, file.name(), image));
   header.bytes = static_cast<int64_t>((major > 1 ? 12 : 10) + size);
   return header;
 }
+
+Result<void> CheckNpySize(const NpyHeader& header, const InputFile& file) {
+  constexpr int64_t kMost = int64_t{1} << 56;
+  if (!file.regular() && header.rows <= kMost / std::max<int64_t>(1, header.columns)) return {};  // nobody knows yet
+  const int64_t found = file.size() - header.bytes;
+  const bool fits = header.columns > 0 && header.columns <= file.size();  // else the product may be too large
+  const int64_t row = fits ? header.row_bytes() : 0;
+  if (fits && header.rows <= found / row && header.rows * row == found) return {};
+  const bool longer = !fits || header.rows > found / row;
+  return Error{file.name() + ": found " + std::to_string(found) + " bytes of numbers, expected " +
+               std::to_string(header.rows) + " rows of " +
+               (fits ? std::to_string(row) + " bytes" : std::to_string(header.columns) + " numbers") +
+               "; the file is " + (longer ? "probably cut off" : "followed by something else")};
+}
+
+namespace {
 
 static_assert(std::endian::native == std::endian::little, "arrays of type '<f8' are read as they stand");
 
@@ -119,7 +133,6 @@ class NpyReader : public ScanReader {
   int64_t bytes_total() const override { return header_.bytes + header_.rows * row_bytes_; }
 
  private:
-  Result<void> CheckSize() const;
   Result<size_t> ReadRows(size_t most);
   template <class Float>
   Result<void> Append(size_t rows, ScanBatch* batch);
@@ -139,29 +152,20 @@ Result<void> NpyReader::ReadHeader() {
   if (format_.npy_columns.empty()) {
     return Error{file_.name() + ": the data set does not say what its columns are; add columns: [angle, y, z]"};
   }
-  SCANCAL_ASSIGN_OR_RETURN(header_, ReadNpyHeader(file_));
+  SCANCAL_ASSIGN_OR_RETURN(header_, ReadNpyHeader(&file_));
   const auto declared = static_cast<int64_t>(format_.npy_columns.size());
   if (header_.columns != declared) {
     return Error{file_.name() + ": found the shape (" + std::to_string(header_.rows) + ", " +
                  std::to_string(header_.columns) + "), expected (points, " + std::to_string(declared) +
                  ") as declared by columns: [" + Listed(format_.npy_columns) + "]"};
   }
-  row_bytes_ = header_.columns * (header_.type == "<f4" ? 4 : 8);
-  SCANCAL_RETURN_IF_ERROR(CheckSize());
+  SCANCAL_RETURN_IF_ERROR(CheckNpySize(header_, file_));
+  row_bytes_ = header_.row_bytes();
   SCANCAL_ASSIGN_OR_RETURN(columns_, ChooseColumns(format_, format_.npy_columns, file_.name() + ": columns"));
   if (header_.rows == 0) return NoPoints(format_, 0);
   row_ = std::clamp<int64_t>(first_row_ - 1, 0, header_.rows);
   if (row_ == header_.rows || last_row_ <= row_) return NoPoints(format_, header_.rows);
   return file_.Skip(row_ * row_bytes_);
-}
-
-Result<void> NpyReader::CheckSize() const {
-  if (!file_.regular()) return {};  // a pipe does not say how much it holds
-  const int64_t found = file_.size() - header_.bytes;
-  if (header_.rows <= found / row_bytes_ && header_.rows * row_bytes_ == found) return {};
-  return Error{file_.name() + ": found " + std::to_string(found) + " bytes of numbers, expected " +
-               std::to_string(header_.rows) + " rows of " + std::to_string(row_bytes_) + " bytes; the file is " +
-               (header_.rows > found / row_bytes_ ? "probably cut off" : "followed by something else")};
 }
 
 Result<bool> NpyReader::Next(ScanBatch* batch) {

@@ -3,8 +3,23 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include "io/input_file.h"
+#include "io/result.h"
 
 namespace scancal {
+
+struct NpyHeader {
+  std::string type;  // '<f8', '<f4'; of an image also '<u2', '<i2', '<i4'
+  int64_t rows = 0, columns = 0;
+  int64_t bytes = 0;  // of the header itself
+  int64_t row_bytes() const { return columns * (type.back() - '0'); }
+};
+
+// From the start of the file; leaves it at the first number. Anything but a two-dimensional array in C order is an
+// error; image: of whole numbers, too.
+Result<NpyHeader> ReadNpyHeader(InputFile* file, bool image = false);
+// That the file, a regular one, has as many bytes as its header says.
+Result<void> CheckNpySize(const NpyHeader& header, const InputFile& file);
 
 // Always kNpyHeaderSize bytes, for an array of float64.
 inline constexpr size_t kNpyHeaderSize = 128;

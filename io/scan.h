@@ -33,6 +33,7 @@ struct WideLayout {              // one profile per line; tall: one per column
   bool tall = false;             // angle_column has `across` instead, and angles come from LoggedAngle
   double scale = 1, offset = 0;  // a cell's number times this and plus that is in the declared unit
   bool image = false;            // cells alone, a profile a row
+  bool scaled = false;           // `scale` was declared
   std::string echo = {};         // what is to be said of it
   bool HasNoAngles() const { return tall || angle_column == 0; }
 };

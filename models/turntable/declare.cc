@@ -47,6 +47,7 @@ std::optional<WideLayout> ReadLayout(YamlMap map) {
   };
   wide.angle_column = wide.image ? 0 : column(wide.tall ? "across_column" : "angle_column", 1);
   wide.first_column = wide.image ? 1 : column("first_column", 2);
+  wide.scaled = layout.Has("scale");
   wide.scale = layout.Number("scale", 1);
   wide.offset = layout.Number("offset", 0);
   if (wide.scale == 0) layout.Fail("scale", "expected what a cell's number is to be multiplied by, not 0");

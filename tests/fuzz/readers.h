@@ -97,8 +97,14 @@ inline void ReadAsKind(std::string_view bytes, const char* kind) {
                     {"z", Dimension::kLength, false},
                     {"profile", Dimension::kNone, false}};
   if (choice & 2U)
-    format.layout = WideLayout{
-        .value = "y", .across = "z", .angle_column = 0, .first_column = 1, .start = -1, .step = 0.5, .image = true};
+    format.layout = WideLayout{.value = "y",
+                               .across = "z",
+                               .angle_column = 0,
+                               .first_column = 1,
+                               .start = -1,
+                               .step = 0.5,
+                               .image = true,
+                               .scaled = true};
   if (choice & 8U) format.text.where = {{"Source", "0"}};
   if (choice & 16U)
     format.angle = LoggedAngle{.column = "Encoder", .is_step = (choice & 32U) != 0, .first = {}, .echo = {}};
@@ -108,6 +114,7 @@ inline void ReadAsKind(std::string_view bytes, const char* kind) {
 inline void ReadAsGocator(std::string_view bytes) { ReadAsKind(bytes, "gocator"); }
 inline void ReadAsLjV(std::string_view bytes) { ReadAsKind(bytes, "lj-v"); }
 inline void ReadAsLjX(std::string_view bytes) { ReadAsKind(bytes, "lj-x"); }
+inline void ReadAsHeightImage(std::string_view bytes) { ReadAsKind(bytes, "image"); }
 
 inline void ReadAsDeclaration(std::string_view bytes) {
   auto dataset = ParseDataset(std::string(bytes), "dataset.yaml", "dataset.yaml");
@@ -128,9 +135,10 @@ struct FuzzedReader {
   const char* name;
   void (*read)(std::string_view bytes);
 };
-inline constexpr FuzzedReader kFuzzedReaders[] = {{"scan", &ReadAsScan},     {"table", &ReadAsTable},
-                                                  {"array", &ReadAsArray},   {"declaration", &ReadAsDeclaration},
-                                                  {"result", &ReadAsResult}, {"gocator", &ReadAsGocator},
-                                                  {"ljv", &ReadAsLjV},       {"ljx", &ReadAsLjX}};
+inline constexpr FuzzedReader kFuzzedReaders[] = {{"scan", &ReadAsScan},        {"table", &ReadAsTable},
+                                                  {"array", &ReadAsArray},      {"declaration", &ReadAsDeclaration},
+                                                  {"result", &ReadAsResult},    {"gocator", &ReadAsGocator},
+                                                  {"ljv", &ReadAsLjV},          {"ljx", &ReadAsLjX},
+                                                  {"image", &ReadAsHeightImage}};
 
 }  // namespace scancal
