@@ -7,7 +7,7 @@ namespace scancal {
 namespace {
 
 constexpr size_t kSeen = size_t{1} << 18;
-const FileKind* const kKinds[] = {&kGocator, &kLjV, &kLjX, &kHeightImage};
+const FileKind* const kKinds[] = {&kGocator, &kLjV, &kLjX, &kHeightImage, &kPly, &kPcd};
 
 }  // namespace
 

@@ -18,7 +18,7 @@ struct FileKind {
   Result<std::unique_ptr<ScanReader>> (*open)(const ScanFormat& format);
 };
 
-extern const FileKind kGocator, kLjV, kLjX, kHeightImage;
+extern const FileKind kGocator, kLjV, kLjX, kHeightImage, kPly, kPcd;
 
 // As `format:` names it, or as its content says; nullptr: none of them, a text or .npy with a column for each quantity.
 const FileKind* FindFileKind(const ScanFormat& format);

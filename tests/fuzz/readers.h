@@ -115,6 +115,8 @@ inline void ReadAsGocator(std::string_view bytes) { ReadAsKind(bytes, "gocator")
 inline void ReadAsLjV(std::string_view bytes) { ReadAsKind(bytes, "lj-v"); }
 inline void ReadAsLjX(std::string_view bytes) { ReadAsKind(bytes, "lj-x"); }
 inline void ReadAsHeightImage(std::string_view bytes) { ReadAsKind(bytes, "image"); }
+inline void ReadAsPly(std::string_view bytes) { ReadAsKind(bytes, "ply"); }
+inline void ReadAsPcd(std::string_view bytes) { ReadAsKind(bytes, "pcd"); }
 
 inline void ReadAsDeclaration(std::string_view bytes) {
   auto dataset = ParseDataset(std::string(bytes), "dataset.yaml", "dataset.yaml");
@@ -135,10 +137,16 @@ struct FuzzedReader {
   const char* name;
   void (*read)(std::string_view bytes);
 };
-inline constexpr FuzzedReader kFuzzedReaders[] = {{"scan", &ReadAsScan},        {"table", &ReadAsTable},
-                                                  {"array", &ReadAsArray},      {"declaration", &ReadAsDeclaration},
-                                                  {"result", &ReadAsResult},    {"gocator", &ReadAsGocator},
-                                                  {"ljv", &ReadAsLjV},          {"ljx", &ReadAsLjX},
-                                                  {"image", &ReadAsHeightImage}};
+inline constexpr FuzzedReader kFuzzedReaders[] = {{"scan", &ReadAsScan},
+                                                  {"table", &ReadAsTable},
+                                                  {"array", &ReadAsArray},
+                                                  {"declaration", &ReadAsDeclaration},
+                                                  {"result", &ReadAsResult},
+                                                  {"gocator", &ReadAsGocator},
+                                                  {"ljv", &ReadAsLjV},
+                                                  {"ljx", &ReadAsLjX},
+                                                  {"image", &ReadAsHeightImage},
+                                                  {"ply", &ReadAsPly},
+                                                  {"pcd", &ReadAsPcd}};
 
 }  // namespace scancal
