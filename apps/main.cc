@@ -14,9 +14,9 @@ DECLARE_bool(version);
 namespace scancal {
 namespace {
 
-const Command* const kCommands[] = {&kRefineCommand,   &kMonteCarloCommand, &kCompareCommand,
-                                    &kSimulateCommand, &kTransformCommand,  &kPropagateCommand,
-                                    &kReportCommand,   &kRecheckCommand,    &kSelftestCommand};
+const Command* const kCommands[] = {&kRefineCommand,    &kMonteCarloCommand, &kCompareCommand, &kSimulateCommand,
+                                    &kTransformCommand, &kPropagateCommand,  &kReportCommand,  &kRecheckCommand,
+                                    &kConvertCommand,   &kSelftestCommand};
 std::string command_line;
 
 void PrintOverview() {

@@ -21,19 +21,6 @@ void CheckVersion(YamlMap& yaml) {
   yaml.Fail("scancal", version > kVersion ? expected + "; the data set is made for a newer scancal" : expected);
 }
 
-Units ReadUnits(YamlMap yaml) {
-  Units units;
-  units.length = yaml.Text("length");
-  units.angle = yaml.Text("angle");
-  const auto length = UnitSize(units.length, Dimension::kLength);
-  const auto angle = UnitSize(units.angle, Dimension::kAngle);
-  if (!length) yaml.Fail("length", "expected mm, m or um");
-  if (!angle) yaml.Fail("angle", "expected deg or rad");
-  units.length_in_mm = length.value_or(1);
-  units.angle_in_rad = angle.value_or(1);
-  return units;
-}
-
 // M: estimate
 ParameterSetting ReadRole(YamlMap& parameters, const std::string& name) {
   ParameterSetting setting{.name = name, .role = parameters.Text(name), .value = {}};
@@ -128,6 +115,19 @@ std::vector<InfluenceSetting> ReadInfluences(YamlMap yaml) {
 }
 
 }  // namespace
+
+Units ReadUnits(YamlMap yaml) {
+  Units units;
+  units.length = yaml.Text("length");
+  units.angle = yaml.Text("angle");
+  const auto length = UnitSize(units.length, Dimension::kLength);
+  const auto angle = UnitSize(units.angle, Dimension::kAngle);
+  if (!length) yaml.Fail("length", "expected mm, m or um");
+  if (!angle) yaml.Fail("angle", "expected deg or rad");
+  units.length_in_mm = length.value_or(1);
+  units.angle_in_rad = angle.value_or(1);
+  return units;
+}
 
 Result<Dataset> ReadDataset(const std::filesystem::path& folder) {
   std::error_code ignored;

@@ -36,6 +36,8 @@ struct Dataset {
   YamlMap yaml;                // what is left for the model
 };
 
+Units ReadUnits(YamlMap units);  // {length: mm, angle: deg}
+
 // folder: holds dataset.yaml, or that file itself. Checks the format version, units, roles, u >= 0; not yet unknown
 // keys.
 Result<Dataset> ReadDataset(const std::filesystem::path& folder);

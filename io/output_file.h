@@ -1,8 +1,12 @@
 // A file that is there whole or not at all.
 #pragma once
+#include <charconv>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <memory>
+#include <string>
 #include <string_view>
 #include "io/result.h"
 
@@ -29,5 +33,19 @@ class OutputFile {
 };
 
 Result<void> WriteFile(const std::filesystem::path& path, std::string_view bytes);  // Create, Write, Commit
+
+template <class Number>
+void AppendBytes(std::string* bytes, Number value) {  // little endian, like the machine
+  char raw[sizeof value];
+  std::memcpy(raw, &value, sizeof value);
+  bytes->append(raw, sizeof value);
+}
+
+template <class Number>
+void AppendText(std::string* text, Number value) {  // as many digits as bring the same number back
+  char digits[32];
+  const auto [end, error] = std::to_chars(std::begin(digits), std::end(digits), value);
+  text->append(digits, end);
+}
 
 }  // namespace scancal

@@ -1,7 +1,5 @@
 #include "io/points.h"
 #include <algorithm>
-#include <charconv>
-#include <cstring>
 #include <utility>
 #include "io/message.h"
 #include "io/npy.h"
@@ -68,20 +66,6 @@ Result<void> AppendFile(const PointRequest& request, const std::vector<ScanColum
 }
 
 using Point = std::array<double, 3>;
-
-template <class Number>
-void AppendBytes(std::string* bytes, Number value) {  // little endian, like the machine
-  char raw[sizeof value];
-  std::memcpy(raw, &value, sizeof value);
-  bytes->append(raw, sizeof value);
-}
-
-template <class Number>
-void AppendText(std::string* text, Number value) {
-  char digits[32];
-  const auto [end, error] = std::to_chars(std::begin(digits), std::end(digits), value);
-  text->append(digits, end);
-}
 
 // What the formats share: records one after the other behind a header that may need the number of points.
 class Writer : public PointCloudWriter {

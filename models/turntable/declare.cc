@@ -83,14 +83,8 @@ ScanDeclaration ReadTarget(YamlMap target, const YamlMap& top, const Dataset& da
   if (scan.name.empty()) target.Fail("name", "expected a name");
   scan.scan = target.Text("scan");
   if (scan.scan.empty()) target.Fail("scan", "expected the path of a scan file, or - for the standard input");
-  scan.format.path = scan.scan == "-" ? "/dev/stdin" : dataset.file.parent_path() / scan.scan;
-  scan.format.units = dataset.units;
-  scan.format.one_of = {{"y", "z"}, {"bearing", "range"}};
-  for (const auto& [name, dimension] : kColumns) scan.format.columns.push_back({name, dimension, name == "angle"});
-  for (YamlMap map : {top, target}) {
-    if (auto layout = ReadLayout(map)) scan.format.layout = layout;
-    ReadFormat(map, dataset.file.parent_path(), &scan.format);
-  }
+  scan.format = ScanFormatOf(scan.scan == "-" ? "/dev/stdin" : dataset.file.parent_path() / scan.scan, dataset.units);
+  for (const YamlMap& map : {top, target}) ReadScanFormat(map, dataset.file.parent_path(), &scan.format);
   ReadKeep(target, dataset.units, &scan);
   for (const KeepInterval& keep : scan.keep)
     if (!kColumns.contains(keep.column)) scan.format.columns.push_back({keep.column, Dimension::kNone, true});
@@ -331,6 +325,20 @@ class Influences {
 };
 
 }  // namespace
+
+ScanFormat ScanFormatOf(const std::filesystem::path& path, const Units& units) {
+  ScanFormat format;
+  format.path = path;
+  format.units = units;
+  format.one_of = {{"y", "z"}, {"bearing", "range"}};
+  for (const auto& [name, dimension] : kColumns) format.columns.push_back({name, dimension, name == "angle"});
+  return format;
+}
+
+void ReadScanFormat(const YamlMap& map, const std::filesystem::path& folder, ScanFormat* format) {
+  if (auto layout = ReadLayout(map)) format->layout = std::move(layout);
+  ReadFormat(map, folder, format);
+}
 
 Result<Declaration> Declare(const Dataset& dataset, Model* model, bool searches) {
   Declaration result;

@@ -1,5 +1,6 @@
 // What a turntable's dataset.yaml declares.
 #pragma once
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,11 @@ struct ScanDeclaration {  // one target: one placement of the plate
   ScanFormat format;
   std::vector<KeepInterval> keep;
 };
+
+// A scan of which nothing is declared but the units: the columns that a turntable knows.
+ScanFormat ScanFormatOf(const std::filesystem::path& path, const Units& units);
+// What a data set, or a target of its own, says of its files. folder: where paths count from.
+void ReadScanFormat(const YamlMap& map, const std::filesystem::path& folder, ScanFormat* format);
 
 struct Senses {
   double angle = 1;  // alpha = angle * reading: clockwise seen from +Z is positive

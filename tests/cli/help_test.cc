@@ -37,7 +37,8 @@ std::vector<std::string> HelpFlags(const std::string& command) {
 TEST(HelpTest, WithoutArgumentsTheCommandsAreListed) {
   const Outcome outcome = RunScancal({});
   EXPECT_EQ(outcome.exit_code, 1);
-  for (const char* command : {"refine", "montecarlo", "compare", "simulate", "transform", "propagate", "selftest"})
+  for (const char* command :
+       {"refine", "montecarlo", "compare", "simulate", "transform", "propagate", "convert", "selftest"})
     EXPECT_THAT(outcome.out, HasSubstr("\n  " + std::string(command) + " "));
   EXPECT_THAT(outcome.out, Not(HasSubstr("--flagfile")));
 }
@@ -63,6 +64,7 @@ TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
   EXPECT_THAT(HelpFlags("report"), ElementsAre("out", "pdf", "dcc", "figures", "previous", "language", "key"));
   EXPECT_THAT(HelpFlags("recheck"), ElementsAre("key", "sign"));
   EXPECT_THAT(HelpFlags("compare"), ElementsAre("steps", "surface"));
+  EXPECT_THAT(HelpFlags("convert"), ElementsAre("as"));
   EXPECT_THAT(HelpFlags("selftest"), ElementsAre("nist"));
   EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out", "unreliable", "key"));
   EXPECT_THAT(HelpFlags("propagate"),

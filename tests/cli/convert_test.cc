@@ -1,0 +1,85 @@
+// scancal convert: one format to another, by the readers of scans.
+#include <gmock/gmock.h>
+#include "tests/cli/data_set.h"
+
+namespace scancal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class ConvertTest : public CliTest {
+ protected:
+  Outcome Convert(const fs::path& in, const fs::path& out, const std::string& as = "") const {
+    std::vector<std::string> arguments = {"convert", in.string(), out.string()};
+    if (!as.empty()) arguments.push_back("--as=" + as);
+    return RunScancal(arguments);
+  }
+  std::string Refusal(const fs::path& in, const fs::path& out, const std::string& as = "") const {
+    const Outcome outcome = Convert(in, out, as);
+    EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+    return OneSentence(outcome);
+  }
+};
+
+// The profiles of a Gocator, whose Z grows towards the sensor.
+std::string GocatorCsv(const std::vector<std::vector<ScanPoint>>& profiles) {
+  std::string text = "Info\nCSV Version,Sensor Count\n2,1\nEnd\nRawProfile\nFrame Count,Column Count,X Offset\n" +
+                     std::to_string(profiles.size()) + "," + std::to_string(profiles[0].size()) +
+                     ",0\n\nFrame,Source,Time,Encoder,Axis";
+  for (size_t k = 0; k < profiles[0].size(); ++k) text += "," + std::to_string(k);
+  char cell[40];
+  for (size_t p = 0; p < profiles.size(); ++p)
+    for (const char* axis : {"X", "Z"}) {
+      std::snprintf(cell, sizeof cell, "\n%zu,0,%zu,%.6f,%s", p, 10 * p, 1e6 * profiles[p][0].angle, axis);
+      text += cell;
+      for (const ScanPoint& point : profiles[p]) {
+        std::snprintf(cell, sizeof cell, ",%.17g", *axis == 'X' ? point.z : -point.y);
+        text += cell;
+      }
+    }
+  return text + "\nEnd\n";
+}
+
+TEST_F(ConvertTest, AGocatorIsCalibratedAsItIsAndConverted) {
+  const fs::path data = MakeData();
+  const Json expected = Refined(data);
+  for (const std::string& name : kNames)
+    WriteWhole(data / (name + ".csv"), GocatorCsv(Profiles(ReadPoints(data / (name + ".csv")))));
+  Append(data / "dataset.yaml", "depth: towards\nangle: {column: Encoder, counts_per_turn: 3.6e8}\n");
+  EXPECT_THAT(Refine(data).out, HasSubstr("Text: Gocator CSV, RawProfile in line 5: y is its Z and z its X, in mm, "
+                                          "angle from Encoder, 360000000 counts a turn."));
+  const auto expect_same = [&](const Json& found) {
+    for (const char* name : {"M", "N"})
+      EXPECT_NEAR(ValueOf(found, name), ValueOf(expected, name), 1e-3 * UOf(expected, name)) << name;
+  };
+  expect_same(Refined(data));
+  for (const std::string& name : kNames) {
+    const Outcome outcome =
+        Convert(data / (name + ".csv"), data / (name + ".ply"), "angle: {column: Encoder, counts_per_turn: 3.6e8}");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("Gocator CSV, RawProfile"), HasSubstr("wrote 800 points to "),
+                                   HasSubstr("0 missing left out; columns: [angle_rad, time, z_mm, y_mm, profile]")));
+    EXPECT_EQ(Convert(data / (name + ".ply"), data / (name + ".npy")).exit_code, 0);
+    Replace(data / "dataset.yaml", "scan: " + name + ".csv", "scan: " + name + ".npy");
+  }
+  Replace(data / "dataset.yaml", "angle: {column: Encoder, counts_per_turn: 3.6e8}",
+          "columns: [angle_rad, profile, time, y_mm, z_mm]");
+  expect_same(Refined(data));
+}
+
+TEST_F(ConvertTest, WhatIsWrongIsToldInOneSentenceAndNothingIsWritten) {
+  const fs::path in = Path("in.csv"), out = Path("out.csv");
+  WriteWhole(in, "Frame,y,z\n1,2,3\n");
+  EXPECT_THAT(Refusal(in, out), HasSubstr("expected also 'angle'"));
+  EXPECT_THAT(Refusal(in, out, "{columns: {angle: Frame}, colums: 1}"), HasSubstr("--as:1:27: unknown key 'colums'"));
+  EXPECT_THAT(Refusal(in, out, "format: gokator"), HasSubstr("expected one of gocator, lj-v, lj-x, image, ply, pcd"));
+  EXPECT_THAT(Refusal(in, Path("out.xyz"), "columns: {angle: Frame}"), HasSubstr("expected .csv, .npy, .ply or .pcd"));
+  EXPECT_THAT(Refusal(in, in, "columns: {angle: Frame}"), HasSubstr("that is the file to read"));
+  EXPECT_THAT(Refusal(Path("absent.csv"), out), HasSubstr("no such file"));
+  EXPECT_THAT(OneSentence(RunScancal({"convert", in.string()})), HasSubstr("found 1 arguments, expected two"));
+  EXPECT_FALSE(fs::exists(out));
+}
+
+}  // namespace
+}  // namespace scancal
