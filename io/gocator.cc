@@ -48,6 +48,7 @@ class GocatorReader : public CsvReader {
  public:
   using CsvReader::CsvReader;
   std::optional<double> FirstProfile() const override { return first_profile_; }
+  bool gives_heights() const override { return true; }
   std::string Describe() const override {
     const std::string text = CsvReader::Describe();
     return text + (text.empty() ? "" : ", ") + "Gocator CSV, " + section_ + " in line " +
@@ -62,6 +63,7 @@ class GocatorReader : public CsvReader {
     for (const ChosenColumn& column : columns_) cells[column.index] = {Cells::kNumberOrNothing, header_[column.index]};
     cells[values_] = {Cells::kNumberOrNothing, raw_ ? "X or Z" : "Z"};
     text_.Expect(std::move(cells), {}, CellCount::kAny);
+    text_.TreatAsMissing(format_.text.missing);
     KeepLines();
     return {};
   }

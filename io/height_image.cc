@@ -172,6 +172,7 @@ class HeightImageReader : public ScanReader {
   int64_t bytes_read() const override { return rows_->bytes_read(); }
   int64_t bytes_total() const override { return rows_->bytes_total(); }
   std::optional<double> FirstProfile() const override { return 1; }
+  bool gives_heights() const override { return layout_.heights; }
   std::string Describe() const override {
     return rows_->title + ", " + std::to_string(rows_->height) + " rows of " + std::to_string(rows_->width) + ", " +
            layout_.value + " = " + Plainly(layout_.scale) + " v" + (layout_.offset < 0 ? " - " : " + ") +
@@ -241,6 +242,7 @@ Result<std::unique_ptr<ScanReader>> OpenHeightImage(const ScanFormat& format) {
     return Error{name +
                  ": found an image, expected what its pixels are: layout: {image: y, scale: ..., start: ..., "
                  "step: ...}, with start and step along the line"};
+  if (!format.text.where.empty()) return Error{name + ": where: an image has no columns, expected keep: {lines: ...}"};
   SCANCAL_ASSIGN_OR_RETURN(const bool by_profile, AnglesByProfile(format));
   SCANCAL_ASSIGN_OR_RETURN(const std::string start, FirstBytes(format.path, 16));
   if (!StartsAsImage(start)) return Error{name + ": found neither a PNG nor a .npy file, expected an image of heights"};

@@ -48,6 +48,7 @@ Result<std::unique_ptr<ScanReader>> OpenLjV(const ScanFormat& format) {
   file.units.length_in_mm = kLjVUnit_mm;
   file.text.separator = '\t';
   file.layout = WideLayout{.value = "y", .across = "z", .tall = true};
+  file.layout->heights = true;
   file.layout->echo = "Keyence LJ-V: X and a profile a column in 0.01 um, -2147483648 to -2147483645 missing";
   for (int k = 0; k < 4; ++k) file.more_invalid.push_back(kLjVInvalid + k);
   return OpenWideCsv(file);
@@ -66,6 +67,7 @@ bool IsLjX(std::string_view start, const ScanFormat& format) {
 Result<std::unique_ptr<ScanReader>> OpenLjXImage(const ScanFormat& format) {
   ScanFormat file = format;
   file.layout->offset -= kLjXZero * file.layout->scale;
+  file.layout->heights = true;
   file.layout->echo = "Keyence LJ-X heights, 32768 is 0, 0 missing";
   file.more_invalid.push_back(0);
   return kHeightImage.open(file);
@@ -83,6 +85,7 @@ Result<std::unique_ptr<ScanReader>> OpenLjX(const ScanFormat& format) {
   const double unit = std::exchange(file.units.length_in_mm, 1);
   file.layout->start *= unit;
   file.layout->step *= unit;
+  file.layout->heights = true;
   file.layout->echo = "Keyence LJ-X heights in mm, " + std::string(kLjXInvalid) + " missing";
   file.more_invalid.push_back(ParseNumber(kLjXInvalid).value);
   return OpenWideCsv(file);

@@ -16,6 +16,7 @@ class LoggedAngleReader : public ScanReader {
       : angle_(std::move(angle)), file_(std::move(file)) {}
   int64_t bytes_read() const override { return file_->bytes_read(); }
   int64_t bytes_total() const override { return file_->bytes_total(); }
+  bool gives_heights() const override { return file_->gives_heights(); }
   std::string Describe() const override {
     const std::string text = file_->Describe();
     return text + (text.empty() ? "" : ", ") + angle_.echo;

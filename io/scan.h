@@ -34,6 +34,7 @@ struct WideLayout {              // one profile per line; tall: one per column
   double scale = 1, offset = 0;  // a cell's number times this and plus that is in the declared unit
   bool image = false;            // cells alone, a profile a row
   bool scaled = false;           // `scale` was declared
+  bool heights = false;          // the maker of the instrument counts y towards the sensor
   std::string echo = {};         // what is to be said of it
   bool HasNoAngles() const { return tall || angle_column == 0; }
 };
@@ -96,7 +97,9 @@ class ScanReader {
   // Of the first profile in the file, with points or without; none: it cannot be told.
   virtual std::optional<double> FirstProfile() const { return std::nullopt; }
   virtual std::string Describe() const { return ""; }  // what was found of the file's dialect; empty: a plain file
-  int64_t missing() const { return missing_; }         // so far
+  // y grows towards the sensor, as the maker of the instrument says: which way it grows is to be declared.
+  virtual bool gives_heights() const { return false; }
+  int64_t missing() const { return missing_; }  // so far
 
  protected:
   static constexpr size_t kBatchPoints = 8192;  // stays in the cache

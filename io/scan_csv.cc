@@ -103,6 +103,7 @@ class WideReader : public CsvReader {
         value_factor_(format.units.Of(ColumnOf(layout_.value).dimension)) {}
 
   std::optional<double> FirstProfile() const override { return first_profile_; }
+  bool gives_heights() const override { return layout_.heights; }
   std::string Describe() const override {
     const std::string text = CsvReader::Describe();
     return text + (text.empty() || layout_.echo.empty() ? "" : ", ") + layout_.echo;
@@ -133,6 +134,7 @@ class WideReader : public CsvReader {
     text_.TreatAsMissing(format_.text.missing);
     KeepLines();
     SCANCAL_ASSIGN_OR_RETURN(row, text_.Peek());
+    trailing_ = layout_.tall && WithoutBlanks(row).ends_with(',') ? 1 : 0;
     // Up to the first cell, or as many as this row can have: if that is fewer it is refused.
     std::vector<ExpectedCells> cells(std::min(first_, row.size()) + 1);
     cells.back() = {Cells::kNumberOrNothing, layout_.value};
@@ -151,7 +153,7 @@ class WideReader : public CsvReader {
       SCANCAL_ASSIGN_OR_RETURN(const bool more, text_.Next());
       if (!more) break;
       SCANCAL_RETURN_IF_ERROR(CheckCellCount());
-      const size_t most = points + cells_ - first_;
+      const size_t end = cells_ - trailing_, most = points + end - first_;
       double* targets[4];
       for (size_t i = 0; i < 4; ++i) {
         batch->columns[i].resize(most);
@@ -161,7 +163,7 @@ class WideReader : public CsvReader {
       const double across = layout_.tall ? text_.Number(angle_) : 0;
       const bool no_angle = IsMissing(angle) || IsMissing(across);
       if (!first_profile_) first_profile_ = layout_.tall ? 1 : profile;
-      for (size_t k = first_; k < cells_; ++k) {
+      for (size_t k = first_; k < end; ++k) {
         const double value = text_.Number(k);
         const auto number = static_cast<double>(k - first_);
         targets[1][points] = (layout_.tall ? across : layout_.start + layout_.step * number) * across_factor_;
@@ -209,7 +211,7 @@ class WideReader : public CsvReader {
   std::optional<double> first_profile_;
   size_t angle_, first_;  // columns, 0-based
   double angle_factor_, across_factor_, value_factor_;
-  size_t cells_ = 0;  // of every row
+  size_t cells_ = 0, trailing_ = 0;  // of every row; empty ones behind its last separator
 };
 
 }  // namespace

@@ -353,7 +353,7 @@ Result<Declaration> Declare(const Dataset& dataset, Model* model, bool searches)
     if (depth != "away" && depth != "towards")
       top.Fail("depth", "expected away or towards: which way the sensor's depth grows");
     result.senses.depth = depth == "towards" ? -1 : 1;
-    result.depth_declared = true;
+    result.senses.depth_declared = true;
   }
   if (top.Has("search") || (searches && !(IsKnown("M", dataset) && IsKnown("N", dataset))))
     result.search = ReadSearch(top, dataset.units);

@@ -33,14 +33,14 @@ void ReadScanFormat(const YamlMap& map, const std::filesystem::path& folder, Sca
 struct Senses {
   double angle = 1;  // alpha = angle * reading: clockwise seen from +Z is positive
   double depth = 1;  // y = depth * reading: growing away from the sensor
+  bool depth_declared = false;
 };
 
 struct Declaration {
   Dataset dataset;
   Senses senses;
-  bool depth_declared = false;  // which way it grows
-  GridBox search;               // of M and N, mm
-  bool searches = true;         // false: `search` is not declared, for M and N are known or nothing is calibrated
+  GridBox search;        // of M and N, mm
+  bool searches = true;  // false: `search` is not declared, for M and N are known or nothing is calibrated
   std::vector<ScanDeclaration> scans;
   std::optional<double> line_correlation;  // points; declared
   bool drift_declared = false;             // `drift`, whatever it is

@@ -183,6 +183,11 @@ Result<void> TakeIn(std::vector<RawProfile> profiles, const ScanDeclaration& dec
 Result<RawScan> ReadScan(const ScanDeclaration& scan, const Senses& senses,
                          const std::function<void(double)>& progress) {
   SCANCAL_ASSIGN_OR_RETURN(const auto reader, ScanReader::Open(scan.format));
+  if (reader->gives_heights() && !senses.depth_declared)
+    return Error{
+        fmt::format("{}: target {}: its maker counts y towards the sensor, expected depth: towards in the data "
+                    "set, or depth: away if it was turned round since",
+                    scan.format.path.string(), scan.name)};
   Gatherer gatherer(scan.format.path);
   ScanBatch batch;
   SensorColumns points;

@@ -198,7 +198,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   if (fit.plate_cut_off) result.notes.push_back(Say(kPlateCutOff));
   if (const std::optional<Sentence> drift = NoteOnDrift(fit)) result.notes.push_back(*drift);
   JudgeCurvature(placements_, fit, &result);
-  JudgeMirrorImage(declaration_.depth_declared, box, placements_, &result);
+  JudgeMirrorImage(declaration_.senses.depth_declared, box, placements_, &result);
   AddVolume(placements_, &result);
   if (choice.figures) AddSurface(box, start.storeys, StoreysOf(placements_, found), &result);
   AddScene(placements_, &result);

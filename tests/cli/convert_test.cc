@@ -46,7 +46,9 @@ TEST_F(ConvertTest, AGocatorIsCalibratedAsItIsAndConverted) {
   const Json expected = Refined(data);
   for (const std::string& name : kNames)
     WriteWhole(data / (name + ".csv"), GocatorCsv(Profiles(ReadPoints(data / (name + ".csv")))));
-  Append(data / "dataset.yaml", "depth: towards\nangle: {column: Encoder, counts_per_turn: 3.6e8}\n");
+  Append(data / "dataset.yaml", "angle: {column: Encoder, counts_per_turn: 3.6e8}\n");
+  EXPECT_THAT(OneSentence(Refine(data)), HasSubstr("its maker counts y towards the sensor, expected depth: towards"));
+  Append(data / "dataset.yaml", "depth: towards\n");
   EXPECT_THAT(Refine(data).out, HasSubstr("Text: Gocator CSV, RawProfile in line 5: y is its Z and z its X, in mm, "
                                           "angle from Encoder, 360000000 counts a turn."));
   const auto expect_same = [&](const Json& found) {

@@ -49,6 +49,7 @@ TEST_F(GocatorTest, AProfileARowAtThePositionsOfTheHeader) {
   EXPECT_THAT(scan["profile"], ElementsAre(7, 7, 8, 8));
   EXPECT_THAT(scan["time"], ElementsAre(100, 100, 200, 200));
   EXPECT_EQ(scan.missing, 2);
+  EXPECT_TRUE(scan.heights);
   EXPECT_EQ(scan.description, "Gocator CSV, Profile in line 9: y is its Z and z its X, in mm, counts");
 }
 
@@ -102,6 +103,16 @@ TEST_F(GocatorTest, WhereAndLinesChooseRows) {
   format.text.where = {};
   format.lines = {14, 15};
   EXPECT_THAT(ReadAll(format)["y"], ElementsAre(5, 6, 7));
+}
+
+TEST_F(GocatorTest, OtherTextsForMissingAreDeclared) {
+  std::string text = kProfile;
+  text.replace(text.find("5.25"), 4, "no echo");
+  ScanFormat format = Format(text);
+  EXPECT_THAT(ReadAll(format).error, HasSubstr("found \"no echo\", expected a number"));
+  format.text.missing = {"no echo"};
+  format.invalid = -6;
+  EXPECT_THAT(ReadAll(format)["y"], ElementsAre(5.5, -7));
 }
 
 TEST_F(GocatorTest, WithoutAnAngleTheRemedyIsTold) {

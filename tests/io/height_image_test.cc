@@ -85,6 +85,7 @@ TEST_F(HeightImageTest, APixelOfAPngIsAPoint) {
   EXPECT_THAT(scan["y"], ElementsAre(499, 32766.5, 0.5, 1));
   EXPECT_THAT(scan["profile"], ElementsAre(1, 1, 2, 2));
   EXPECT_EQ(scan.missing, 2);
+  EXPECT_FALSE(scan.heights);
   EXPECT_EQ(scan.description, "PNG, 2 rows of 3, y = 0.5 v - 1 mm, steps");
 }
 
@@ -132,6 +133,7 @@ TEST_F(HeightImageTest, HeightsOfAnLjXAreAbout32768) {
     const Scan scan = ReadAll(format);
     EXPECT_THAT(scan["y"], ElementsAre(DoubleNear(0, 1e-9), DoubleNear(0.016, 1e-9)));
     EXPECT_EQ(scan.missing, 1);
+    EXPECT_TRUE(scan.heights);
     EXPECT_THAT(scan.description, HasSubstr("y = 0.008 v - 262.144 mm, Keyence LJ-X heights, 32768 is 0, 0 missing"));
   }
 }
@@ -152,6 +154,9 @@ TEST_F(HeightImageTest, WhatAPixelIsMustBeDeclared) {
   format.layout->scaled = false;
   EXPECT_THAT(ReadAll(format).error, HasSubstr(": found whole numbers, expected what one is: layout: {image: ..., "
                                                "scale: ...}, in mm"));
+  format.layout->scaled = true;
+  format.text.where = {{"Source", "0"}};
+  EXPECT_THAT(ReadAll(format).error, HasSubstr(": where: an image has no columns, expected keep: {lines: ...}"));
   format.layout.reset();
   EXPECT_THAT(ReadAll(format).error, HasSubstr(": found an image, expected what its pixels are: layout: {image: y, "));
   format = Format(Npy<double>("<f8", "(1, 2)", {5, 6}));

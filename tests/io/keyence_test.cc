@@ -41,9 +41,16 @@ TEST_F(KeyenceTest, ProfilesOfAnLjVAreColumnsInHundredthsOfAMicrometre) {
   EXPECT_THAT(scan["y"], ElementsAre(Is(1.5), Is(0.0015), Is(0.0025), Is(1.51), Is(0.0035)));
   EXPECT_THAT(scan["profile"], ElementsAre(1, 3, 3, 1, 3));
   EXPECT_EQ(scan.missing, 4);
+  EXPECT_TRUE(scan.heights);
   EXPECT_EQ(scan.description,
             "cells between tabs, Keyence LJ-V: X and a profile a column in 0.01 um, -2147483648 to -2147483645 "
             "missing, steps");
+}
+
+TEST_F(KeyenceTest, ATabBehindTheLastProfileIsNoProfile) {
+  const Scan scan = ReadAll(Format("0\t100000\t\r\n100\t-2147483648\t\r\n200\t300000\t\r\n"));
+  EXPECT_THAT(scan["y"], ElementsAre(Is(1), Is(3)));
+  EXPECT_EQ(scan.missing, 1);
 }
 
 TEST_F(KeyenceTest, TheDeclaredUnitOfLengthDoesNotCount) {
@@ -84,6 +91,7 @@ TEST_F(KeyenceTest, HeightsOfAnLjXAreRowsInMillimetres) {
   EXPECT_THAT(scan["z"], ElementsAre(-1, -0.5, -0.75, -0.5));
   EXPECT_THAT(scan["y"], ElementsAre(1.5, 1.7, 2, 2.1));
   EXPECT_EQ(scan.missing, 2);
+  EXPECT_TRUE(scan.heights);
   EXPECT_EQ(scan.description, "Keyence LJ-X heights in mm, -99999.9999 missing, steps");
 }
 

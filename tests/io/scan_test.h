@@ -16,6 +16,7 @@ struct Scan {
   int64_t missing = 0;
   std::string error;  // empty: none
   std::string description;
+  bool heights = false;
   // Of a column; empty if there is none.
   std::vector<double> operator[](std::string_view name) const {
     const auto found = std::find(names.begin(), names.end(), name);
@@ -31,6 +32,7 @@ inline Scan ReadAll(const ScanFormat& format) {
     return scan;
   }
   scan.description = (*reader)->Describe();
+  scan.heights = (*reader)->gives_heights();
   ScanBatch batch;
   for (;;) {
     const auto more = (*reader)->Next(&batch);
