@@ -41,16 +41,16 @@ struct WideLayout {              // one profile per line; tall: one per column
 
 // How a file says the angle of a profile where no column has it.
 struct LoggedAngle {
-  std::string column = "angle";  // counts, or a time
-  double rad_per_count = 1;      // or per unit of time; is_step: from one profile to the next
-  double zero = 0;               // the count at angle 0
-  double wrap = 0;               // counts after which the counter starts again; 0: it does not
-  bool is_step = false;          // no column: the first profile is at `start`, the others follow by their number
-  double start = 0;              // rad
-  std::filesystem::path file;    // of its own, with `column` and `by`; empty: the scan's
-  std::string by;                // the column that both files have: a time stamp or a frame number
-  std::optional<double> first;   // the number of the profile at `start`; none: the first in the file
-  std::string echo;              // what was declared, in words
+  std::string column = "angle";      // counts, or a time
+  double rad_per_count = 1;          // or per unit of time; is_step: from one profile to the next
+  double zero = 0;                   // the count at angle 0
+  double wrap = 0;                   // counts after which the counter starts again; 0: it does not
+  bool is_step = false;              // no column: the first profile is at `start`, the others follow by their number
+  double start = 0;                  // rad
+  std::filesystem::path file = {};   // of its own, with `column` and `by`; empty: the scan's
+  std::string by = {};               // the column that both files have: a time stamp or a frame number
+  std::optional<double> first = {};  // the number of the profile at `start`; none: the first in the file
+  std::string echo = {};             // what was declared, in words
 };
 
 struct ScanFormat {  // how one scan file is to be read, as the data set declares it

@@ -297,6 +297,7 @@ Calibration Summarize(const Solution& solution, const PureError& pure_error) {
   const double noise_dof = solution.variances && headline.dof.size() > 0
                                ? std::max(clustered.dof, std::min(headline.dof.minCoeff(), kKnown_dof))
                                : clustered.dof;
+  if (solution.variances) result.noise_dof = noise_dof;
   if (solution.variances) {
     const Neighbours neighbours = CorrelationOfNeighbours(solution.problem, solution.fit.estimate, solution.linear);
     result.neighbours = neighbours.correlation;

@@ -57,6 +57,8 @@ Headline HeadlineOf(const Solution& solution, const Covariance& clustered);
 // views share. The model adds what only it can say.
 Calibration Summarize(const Solution& solution, const PureError& pure_error);
 
+inline constexpr double kSuspicious = 1e-3;  // p: a warning that a right data set raises once in a thousand
+
 // The estimated parameter that moves furthest in units of its u, and by how many; moves: one per estimated parameter.
 std::pair<std::string, double> Furthest(const std::vector<double>& moves, const Calibration& result);
 

@@ -174,6 +174,7 @@ struct Calibration {
   std::vector<MisfitTest> misfits;  // of a weighted fit
   double neighbours = 0;            // correlation of the residuals of neighbouring views
   double neighbour_noise = 0;       // of what is random in them, where it was estimated and is in u
+  double noise_dof = 0;             // of a weighted fit: of what is known of the noise; not written
   double condition = 0;
   std::map<std::string, double> weakest;  // components of the least determined direction
   std::vector<BudgetLine> budget;

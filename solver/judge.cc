@@ -104,7 +104,6 @@ constexpr Message<Sentence, std::string_view> kLeastDetermined{
     "Die Ausgleichung konvergierte nicht: {}; am wenigsten bestimmt ist {}: festhalten, Vorwissen angeben oder mehr "
     "Iterationen zulassen"};
 
-constexpr double kSuspicious = 1e-3;     // a warning that a right data set raises once in a thousand
 constexpr double kContradiction = 1e-6;  // no chance any more
 constexpr double kNearly = 0.8;          // of the strongest
 constexpr double kExcluded = 1.3;        // times what was declared

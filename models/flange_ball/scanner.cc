@@ -110,8 +110,7 @@ void JudgeBall(const Robot& robot, Calibration* calibration) {
 // Unreliable: the ball strays farther where the tool was held out than u and the noise explain.
 void JudgeHeldOut(const Robot& robot, const Solution& solution, Model model, const std::vector<Model::Target>& tools,
                   std::vector<Model::Target> held_out, Calibration* calibration) {
-  constexpr double kSuspicious = 1e-3, kMore = 1.2;
-  if (held_out.empty() || calibration->misfits.empty()) return;
+  if (held_out.empty() || !(calibration->noise_dof >= 1)) return;
   const double spread = MeanSpread(robot, tools), strays = MeanSpread(robot, held_out);
   std::vector<std::vector<double>> values;
   for (Model::Target& tool : held_out) {
@@ -126,8 +125,8 @@ void JudgeHeldOut(const Robot& robot, const Solution& solution, Model model, con
   Estimate at = NominalStart(problem);
   for (size_t t = 0; t < values.size(); ++t) SetValues(problem, values[t], t, &at);
   Weigh(&problem, at);
-  const HeldOutTest test = TestHeldOut(problem, at, calibration->covariance, calibration->misfits.front().dof2);
-  if (test.p < kSuspicious && std::sqrt(test.F) > kMore)
+  const HeldOutTest test = TestHeldOut(problem, at, calibration->covariance, calibration->noise_dof);
+  if (test.Contradicts())
     calibration->unreliable.push_back(Say(kHeldOutStrays, strays, spread, std::sqrt(test.F), test.p));
 }
 

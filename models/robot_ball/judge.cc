@@ -91,8 +91,6 @@ constexpr Message<double, double, double, double> kHeldOutOff{
     "{:.3g}, "
     "{:.0f} Freiheitsgrade, p = {:.1g}): Dem Modell fehlt dort etwas, das U nicht enthält"};
 
-constexpr double kSuspicious = 1e-3;
-constexpr double kMore = 1.2;  // times what is explained: less is of no consequence
 constexpr size_t kFewestBalls = 3;
 constexpr double kLeastTurn_rad = 0.0175;  // one degree, rms
 
@@ -354,8 +352,6 @@ std::vector<OffPose> SetAside(const Measurements& data, const JointFit& fit, std
   return poses;
 }
 
-double NoiseDof(const Calibration& result) { return result.misfits.empty() ? 0 : result.misfits.front().dof2; }
-
 // A scanner that slipped in its mount, or an artifact that was pushed at its station (or the base, after which all
 // stations are new).
 void JudgeChange(const ScreenedFit& fitted, Calibration* result) {
@@ -371,7 +367,7 @@ void JudgeChange(const ScreenedFit& fitted, Calibration* result) {
     return six;
   };
   const auto find = [&](const Order& order, int first) {
-    return FindChange(solution.problem, solution.fit.estimate, solution.linear, NoiseDof(*result), order,
+    return FindChange(solution.problem, solution.fit.estimate, solution.linear, result->noise_dof, order,
                       six_from(first));
   };
   Order all, order;
@@ -448,7 +444,7 @@ Eigen::MatrixXd CovarianceOfCheck(const ScreenedFit& fitted, const Calibration& 
 
 // Poses that took no part, their artifact placed by them.
 void JudgeHeldOut(const ScreenedFit& fitted, Calibration* result) {
-  if (fitted.data.held_out.empty() || !(NoiseDof(*result) >= 1)) return;
+  if (fitted.data.held_out.empty() || !(result->noise_dof >= 1)) return;
   const Solution& solution = fitted.fit.solution;
   Measurements data = fitted.data;
   data.stations = data.held_out;
@@ -461,9 +457,8 @@ void JudgeHeldOut(const ScreenedFit& fitted, Calibration* result) {
   Estimate at = NominalStart(problem);
   at.system = solution.fit.estimate.system;
   Weigh(&problem, at);
-  const HeldOutTest test = TestHeldOut(problem, at, result->covariance, NoiseDof(*result));
-  if (test.p < kSuspicious && std::sqrt(test.F) > kMore)
-    result->unreliable.push_back(Say(kHeldOutOff, std::sqrt(test.F), test.F, test.dof1, test.p));
+  const HeldOutTest test = TestHeldOut(problem, at, result->covariance, result->noise_dof);
+  if (test.Contradicts()) result->unreliable.push_back(Say(kHeldOutOff, std::sqrt(test.F), test.F, test.dof1, test.p));
 }
 
 void JudgeCheck(const ScreenedFit& fitted, Calibration* result) {
@@ -478,14 +473,14 @@ void JudgeCheck(const ScreenedFit& fitted, Calibration* result) {
   }
   const double before = SizeOfErrors(check.before).mean, after = SizeOfErrors(check.after).mean;
   if (after > before) result->unreliable.push_back(Say(kWorseThanNominal, after, before));
-  if (!(NoiseDof(*result) >= 1) || data.check.empty()) return;
+  if (!(result->noise_dof >= 1) || data.check.empty()) return;
   const Eigen::MatrixXd covariance = CovarianceOfCheck(fitted, *result);
   const auto errors = Eigen::VectorXd::Map(check.after.data(), std::ssize(check.after));
   const double n = static_cast<double>(check.after.size());
   const double F = errors.dot(Eigen::LLT<Eigen::MatrixXd>(covariance).solve(errors)) / n, mean = errors.mean(),
-               u_mean = std::sqrt(covariance.sum()) / n, p = 2 * FUpperTail(F, n, NoiseDof(*result)),
-               p_mean = 2 * FUpperTail(std::pow(mean / u_mean, 2), 1, NoiseDof(*result));
-  if (p < kSuspicious && std::sqrt(F) > kMore)
+               u_mean = std::sqrt(covariance.sum()) / n, p = 2 * FUpperTail(F, n, result->noise_dof),
+               p_mean = 2 * FUpperTail(std::pow(mean / u_mean, 2), 1, result->noise_dof);
+  if (p < kSuspicious && std::sqrt(F) > HeldOutTest::kMore)
     result->unreliable.push_back(Say(kLengthsOff, std::sqrt(errors.squaredNorm() / n), std::sqrt(F), std::min(1.0, p)));
   if (p_mean < kSuspicious) result->unreliable.push_back(Say(kLengthsShifted, mean, u_mean, std::min(1.0, p_mean)));
 }

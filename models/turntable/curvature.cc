@@ -22,7 +22,7 @@ constexpr Message<double, double, double, std::string_view, double, double> kBen
     "{:+.2g} mm "
     "falsch ({:.2g} u); es kann auch die Form der Platte sein. lens_z2 und lens_yz2 oder form angeben"};
 
-constexpr double kSuspicious = 1e-4;
+constexpr double kSignificant = 1e-4;
 constexpr double kFewest = 12;  // profiles
 
 struct Bent {
@@ -56,7 +56,7 @@ Bent BentOf(const Profile& profile, const System& system) {
 }  // namespace
 
 void JudgeCurvature(const std::vector<Placement>& placements, const JointFit& fit, Calibration* calibration) {
-  Problem problem = fit.solution.problem;
+  const Problem& problem = fit.solution.problem;
   for (const int k : {Model::kLensZ2, Model::kLensYZ2, Model::kForm, Model::kLinearity3})
     if (problem.quantities[k].role == Role::kEstimate) return;
   const System found = fit.Found();
@@ -96,32 +96,16 @@ void JudgeCurvature(const std::vector<Placement>& placements, const JointFit& fi
   if (const Quantity& form = problem.quantities[Model::kForm]; form.role == Role::kConsider)
     covariance += inverse * normal(0, 0) * std::pow(1.7 * form.u, 2) / static_cast<double>(placements.size()) * 2;
   const double F = lens.dot(covariance.inverse() * lens) / 2;
-  if (!(FUpperTail(F, 2, dof * (1 - rho) / (1 + rho)) < kSuspicious)) return;
-  for (Quantity& quantity : problem.quantities)
-    if (quantity.role == Role::kConsider && (quantity.scope == Scope::kSystem || quantity.scope == Scope::kTarget))
-      quantity.role = Role::kHold;
-  for (const int k : {Model::kLensZ2, Model::kLensYZ2}) {
-    problem.quantities[k].role = Role::kConsider;
-    problem.quantities[k].u = 1;
-  }
-  const std::vector<int> estimated = problem.With({Scope::kSystem}, Role::kEstimate);
-  Eigen::VectorXd wrong = Eigen::VectorXd::Zero(std::ssize(estimated));
-  for (const Contribution& line : BudgetOf(problem, fit.solution.fit.estimate, fit.solution.linear).lines)
-    for (const int k : {0, 1})
-      if (line.source == problem.quantities[k == 0 ? Model::kLensZ2 : Model::kLensYZ2].name)
-        wrong += lens[k] * line.sensitivity;  // depth as shown lacks it
-  double furthest = 0;
-  std::string which;
-  double by = 0;
-  for (size_t e = 0; e < estimated.size(); ++e) {
-    const Parameter& p = *calibration->Find(problem.quantities[estimated[e]].name);
-    const double in_u = std::abs(wrong[static_cast<Eigen::Index>(e)]) / p.u;
-    if (in_u <= furthest) continue;
-    furthest = in_u;
-    which = p.name;
-    by = wrong[static_cast<Eigen::Index>(e)];
-  }
-  if (furthest > 1) calibration->unreliable.push_back(Say(kBentProfiles, lens[0], lens[1], F, which, by, furthest));
+  if (!(FUpperTail(F, 2, dof * (1 - rho) / (1 + rho)) < kSignificant)) return;
+  const std::vector<int> lenses = {Model::kLensZ2, Model::kLensYZ2};
+  const std::vector<double> wrong = Plain(  // depth as shown lacks it
+      SensitivitiesTo(problem, fit.solution.fit.estimate, fit.solution.linear, lenses) * lens);
+  const auto [which, furthest] = Furthest(wrong, *calibration);
+  if (!(furthest > 1)) return;
+  const auto e =
+      std::find(calibration->estimated.begin(), calibration->estimated.end(), which) - calibration->estimated.begin();
+  calibration->unreliable.push_back(
+      Say(kBentProfiles, lens[0], lens[1], F, which, wrong[static_cast<size_t>(e)], furthest));
 }
 
 }  // namespace scancal::turntable

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <numeric>
 #include "models/line/noise.h"
@@ -163,27 +162,20 @@ void AddMotion(const std::vector<Placement>& placements, size_t t, std::vector<M
 }
 
 std::optional<Sentence> NoteOnDrift(const JointFit& fit) {
-  Problem problem = fit.solution.problem;
+  const Problem& problem = fit.solution.problem;
   for (const int k : {Model::kDriftSweep, Model::kDrift, Model::kWarmUp})
     if (problem.quantities[k].role != Role::kHold) return std::nullopt;
-  for (Quantity& quantity : problem.quantities)
-    if (quantity.role == Role::kConsider && (quantity.scope == Scope::kSystem || quantity.scope == Scope::kTarget))
-      quantity.role = Role::kHold;
-  for (const int k : {Model::kDriftSweep, Model::kDrift}) {
-    problem.quantities[k].role = Role::kConsider;
-    problem.quantities[k].u = 1;
-  }
-  const std::vector<int> estimated = problem.With({Scope::kSystem}, Role::kEstimate);
-  std::map<std::pair<int, int>, double> shift;  // drift, M or N; per mm
-  for (const Contribution& line : BudgetOf(problem, fit.solution.fit.estimate, fit.solution.linear).lines)
-    for (const int k : {Model::kDriftSweep, Model::kDrift})
-      for (size_t e = 0; e < estimated.size() && line.source == problem.quantities[k].Source(); ++e)
-        shift[{k, estimated[e]}] = -line.sensitivity[static_cast<Eigen::Index>(e)];
-  const auto by = [&](int drift, int of) { return 0.1 * shift[{drift, of}]; };
-  const bool any = std::any_of(shift.begin(), shift.end(), [](const auto& each) { return each.second != 0; });
-  if (!any) return std::nullopt;
-  return Say(kOneWay, by(Model::kDriftSweep, Model::kM), by(Model::kDriftSweep, Model::kN),
-             by(Model::kDrift, Model::kM), by(Model::kDrift, Model::kN));
+  const std::vector<int> estimated = problem.With({Scope::kSystem}, Role::kEstimate),
+                         drifts = {Model::kDriftSweep, Model::kDrift};
+  constexpr double kShown_mm = 0.1;
+  const Eigen::MatrixXd moves =
+      -kShown_mm * SensitivitiesTo(problem, fit.solution.fit.estimate, fit.solution.linear, drifts);
+  if (moves.isZero(0)) return std::nullopt;
+  const auto by = [&](Eigen::Index drift, int of) {
+    const auto e = std::find(estimated.begin(), estimated.end(), of) - estimated.begin();
+    return e < moves.rows() ? moves(e, drift) : 0;
+  };
+  return Say(kOneWay, by(0, Model::kM), by(0, Model::kN), by(1, Model::kM), by(1, Model::kN));
 }
 
 JointFit Scanner::Fit(const System& system, Model::Residuals residuals, const FitChoice& choice) const {

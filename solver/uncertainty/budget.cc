@@ -122,4 +122,18 @@ Budget BudgetOf(const Problem& problem, const Estimate& fit, const Linearization
   return budget;
 }
 
+Eigen::MatrixXd SensitivitiesTo(const Problem& problem, const Estimate& fit, const Linearization& linear,
+                                std::span<const int> quantities) {
+  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(linear.factor.cols(), std::ssize(quantities));
+  for (size_t t = 0; t < problem.targets.size(); ++t) {
+    const LinearTarget& target = linear.targets[t];
+    const std::vector<double> values = Values(problem, fit, t);
+    for (size_t v = 0; v < problem.targets[t].views.size(); ++v)
+      if (const Block& view = problem.targets[t].views[v]; view.prior.empty())
+        scores += target.system_left.middleRows(target.first[v], view.size()).transpose() *
+                  view.Weighted(RawDerivatives(view, values, quantities));
+  }
+  return -InverseInformation(linear) * scores;
+}
+
 }  // namespace scancal

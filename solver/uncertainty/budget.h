@@ -1,6 +1,7 @@
 // K V K': what every considered quantity contributes to the covariance of the estimate.
 #pragma once
 #include <Eigen/Core>
+#include <span>
 #include <string>
 #include <vector>
 #include "solver/linearize.h"
@@ -25,5 +26,9 @@ struct Budget {
 // system, one per target, per view, per point, as the scope says. Priors contribute their own unit noise. linear: of
 // the views, at the fit.
 Budget BudgetOf(const Problem& problem, const Estimate& fit, const Linearization& linear);
+
+// d estimate / d q of quantities of system scope that were not estimated, one a column: -(J'J)^-1 J' dr/dq (GUM 5.1.3).
+Eigen::MatrixXd SensitivitiesTo(const Problem& problem, const Estimate& fit, const Linearization& linear,
+                                std::span<const int> quantities);
 
 }  // namespace scancal

@@ -216,6 +216,11 @@ std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit,
   return tests;
 }
 
+bool HeldOutTest::Contradicts() const {
+  constexpr double kSignificant = 1e-3;
+  return p < kSignificant && std::sqrt(F) > kMore;
+}
+
 HeldOutTest TestHeldOut(const Problem& held_out, const Estimate& at, const Eigen::MatrixXd& covariance,
                         double noise_dof) {
   HeldOutTest test;

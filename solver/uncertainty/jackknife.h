@@ -54,7 +54,9 @@ std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit,
 // (out-of-sample Chow test; Hamilton, Time Series Analysis, 1994, 8.1). at: the fit of the system, and of the targets'
 // own quantities where they start. The problem is weighed with the noise of the calibration, of noise_dof.
 struct HeldOutTest {
+  static constexpr double kMore = 1.2;  // times what is explained: less is of no consequence
   double F = 0, dof1 = 0, p = 1;
+  bool Contradicts() const;  // significant, and more than that
 };
 HeldOutTest TestHeldOut(const Problem& held_out, const Estimate& at, const Eigen::MatrixXd& covariance,
                         double noise_dof);

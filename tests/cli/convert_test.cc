@@ -28,7 +28,7 @@ std::string GocatorCsv(const std::vector<std::vector<ScanPoint>>& profiles) {
                      std::to_string(profiles.size()) + "," + std::to_string(profiles[0].size()) +
                      ",0\n\nFrame,Source,Time,Encoder,Axis";
   for (size_t k = 0; k < profiles[0].size(); ++k) text += "," + std::to_string(k);
-  char cell[40];
+  char cell[80];
   for (size_t p = 0; p < profiles.size(); ++p)
     for (const char* axis : {"X", "Z"}) {
       std::snprintf(cell, sizeof cell, "\n%zu,0,%zu,%.6f,%s", p, 10 * p, 1e6 * profiles[p][0].angle, axis);

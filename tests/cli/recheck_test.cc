@@ -110,7 +110,9 @@ TEST_F(RecheckTest, EveryNumberAndSentenceIsCovered) {
     Write(edited);
     const Outcome outcome = Recheck();
     EXPECT_EQ(outcome.exit_code, 1) << at << " " << number;
-    if (std::string(at) != "/covariance/0/1") EXPECT_THAT(outcome.err, HasSubstr("its own data say")) << at;
+    if (std::string(at) != "/covariance/0/1") {
+      EXPECT_THAT(outcome.err, HasSubstr("its own data say")) << at;
+    }
   }
   for (const char* at : {"/name", "/weights", "/parameters/0/role", "/determined/M", "/budget/0/source",
                          "/certificate/item/name", "/montecarlo/parameters/0/verdict", "/targets/1/name"}) {

@@ -237,7 +237,9 @@ TEST_F(DialectTest, DamagedPackingsAreTold) {
   for (size_t k = 0; k < sound.size(); ++k) {
     std::string damaged = sound;
     damaged[k] = static_cast<char>(damaged[k] ^ 0x55);
-    if (k < 4 || k > 9) EXPECT_NE(ErrorOf(damaged), "") << k;  // between them stand time and system
+    if (k < 4 || k > 9) {  // between them stand time and system
+      EXPECT_NE(ErrorOf(damaged), "") << k;
+    }
   }
   std::string long_text = "angle,y,z\n";
   while (long_text.size() < 100'000'000) long_text += "1,2,3\n1,2,3\n1,2,3\n1,2,3\n1,2,3\n1,2,3\n1,2,3\n1,2,3\n";

@@ -123,7 +123,8 @@ TEST_F(GocatorTest, WithoutAnAngleTheRemedyIsTold) {
 }
 
 TEST_F(GocatorTest, OtherSectionsAreNamed) {
-  EXPECT_EQ(Read(kInfo + "SurfacePointCloud\nFrame,Source\n1,0\nEnd\n").error,
+  const std::string error = Read(kInfo + "SurfacePointCloud\nFrame,Source\n1,0\nEnd\n").error;
+  EXPECT_EQ(error,
             Place(": found the sections Info, DeviceInfo, SurfacePointCloud of a Gocator's CSV, expected Profile, "
                   "RawProfile or Part; export profiles or a surface"));
 }

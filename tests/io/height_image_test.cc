@@ -145,7 +145,7 @@ TEST_F(HeightImageTest, ManyRowsComeInBatches) {
   size_t points = 0, batches = 0;
   for (; *(*reader)->Next(&batch); ++batches) points += batch.size();
   EXPECT_EQ(points, 250'000U);
-  EXPECT_EQ(batches, 3U);
+  EXPECT_GT(batches, 3U);
   EXPECT_EQ((*reader)->bytes_read(), (*reader)->bytes_total());
 }
 
