@@ -15,8 +15,8 @@ namespace scancal {
 namespace {
 
 const Command* const kCommands[] = {&kRefineCommand,    &kMonteCarloCommand, &kCompareCommand, &kSimulateCommand,
-                                    &kTransformCommand, &kPropagateCommand,  &kReportCommand,  &kRecheckCommand,
-                                    &kConvertCommand,   &kSelftestCommand};
+                                    &kTransformCommand, &kPropagateCommand,  &kUrdfCommand,    &kReportCommand,
+                                    &kRecheckCommand,   &kConvertCommand,    &kSelftestCommand};
 std::string command_line;
 
 void PrintOverview() {

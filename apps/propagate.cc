@@ -35,6 +35,7 @@ Result<int> Propagated(const std::string& file) {
   if (checked.scanner) {
     YamlMap declared = checked.scanner->dataset().yaml;
     points.angle_sense = declared.Text("rotation", "") == "counterclockwise" ? -1 : 1;
+    points.declared = declared;
     points.depth_sense = declared.Text("depth", "") == "towards" ? -1 : 1;
   }
   SCANCAL_ASSIGN_OR_RETURN(const Propagation propagation, kind->Propagate(calibration, points, FLAGS_distance));

@@ -116,10 +116,10 @@ std::vector<InfluenceSetting> ReadInfluences(YamlMap yaml) {
 
 }  // namespace
 
-Units ReadUnits(YamlMap yaml) {
+Units ReadUnits(YamlMap yaml, const std::optional<Units>& otherwise) {
   Units units;
-  units.length = yaml.Text("length");
-  units.angle = yaml.Text("angle");
+  units.length = yaml.Text("length", otherwise ? std::optional(otherwise->length) : std::nullopt);
+  units.angle = yaml.Text("angle", otherwise ? std::optional(otherwise->angle) : std::nullopt);
   const auto length = UnitSize(units.length, Dimension::kLength);
   const auto angle = UnitSize(units.angle, Dimension::kAngle);
   if (!length) yaml.Fail("length", "expected mm, m or um");

@@ -34,9 +34,11 @@ struct Dataset {
   std::vector<InfluenceSetting> influences;
   nlohmann::json certificate;  // null if absent
   YamlMap yaml;                // what is left for the model
+  std::string urdf;            // what the URDF says that it names, where calibration.json kept it; empty: it is read
 };
 
-Units ReadUnits(YamlMap units);  // {length: mm, angle: deg}
+// {length: mm, angle: deg}; what it leaves out is as `otherwise` says, or else required.
+Units ReadUnits(YamlMap yaml, const std::optional<Units>& otherwise = {});
 
 // folder: holds dataset.yaml, or that file itself. Checks the format version, units, roles, u >= 0; not yet unknown
 // keys.

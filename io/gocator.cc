@@ -159,7 +159,7 @@ class GocatorReader : public CsvReader {
     rows.columns.push_back({names[0], Dimension::kNone});  // there is always one
     SCANCAL_ASSIGN_OR_RETURN(columns_, ChooseColumns(rows, names, text_.Place()));
     columns_.pop_back();
-    SCANCAL_ASSIGN_OR_RETURN(where_, WhereIn(names));
+    SCANCAL_ASSIGN_OR_RETURN(where_, ChooseWhere(format_, names, text_.Place()));
     return {};
   }
 

@@ -16,6 +16,7 @@ struct PointRequest {
   std::filesystem::path file;               // one point a line, as a scan file has them; empty: none
   Units units;                              // of the typed ones, and of columns without a unit in their name
   double angle_sense = 1, depth_sense = 1;  // of a scanner's readings, as its data set declares them
+  YamlMap declared = {};                    // that data set, where it is known
 };
 
 // The typed ones first; one number per column, mm and rad. An Error without any, or where a number is missing.

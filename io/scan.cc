@@ -64,7 +64,7 @@ std::optional<char> ReadSign(YamlMap& map, const char* key, const std::map<std::
   return std::nullopt;
 }
 
-void ReadTextFormat(YamlMap map, TextFormat* format) {
+void ReadDialect(YamlMap map, TextFormat* format) {
   static const std::map<std::string, char> separators = {{",", ','},         {"comma", ','},  {";", ';'},
                                                          {"semicolon", ';'}, {"tab", '\t'},   {"\t", '\t'},
                                                          {" ", ' '},         {"spaces", ' '}, {"blanks", ' '}};
@@ -153,11 +153,7 @@ Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const 
   return chosen;
 }
 
-void ReadFormat(YamlMap map, const std::filesystem::path& folder, ScanFormat* format) {
-  if (map.Has("format")) {
-    format->kind = map.Text("format");
-    if (!NamedFileKind(format->kind)) map.Fail("format", "expected one of " + Listed(FileKindNames()));
-  }
+void ReadColumnNames(YamlMap map, ScanFormat* format) {
   if (map.IsMap("columns")) {
     YamlMap names = map.Map("columns");
     for (const std::string& name : names.Keys()) {
@@ -169,6 +165,22 @@ void ReadFormat(YamlMap map, const std::filesystem::path& folder, ScanFormat* fo
   } else if (map.Has("columns")) {
     format->npy_columns = map.Texts("columns");
   }
+}
+
+void ReadTextFormat(YamlMap map, ScanFormat* format) {
+  if (map.Has("text")) ReadDialect(map.Map("text"), &format->text);
+  if (!map.Has("where")) return;
+  YamlMap where = map.Map("where");
+  for (const std::string& column : where.Keys()) format->text.where.emplace_back(column, where.Text(column));
+}
+
+void ReadFormat(YamlMap map, const std::filesystem::path& folder, ScanFormat* format) {
+  if (map.Has("format")) {
+    format->kind = map.Text("format");
+    if (!NamedFileKind(format->kind)) map.Fail("format", "expected one of " + Listed(FileKindNames()));
+  }
+  ReadColumnNames(map, format);
+  ReadTextFormat(map, format);
   if (map.Has("angle")) format->angle = ReadLoggedAngle(map.Map("angle"), folder, format->units);
   if (map.IsNumber("invalid")) {
     format->invalid = map.Number("invalid");
@@ -182,10 +194,19 @@ void ReadFormat(YamlMap map, const std::filesystem::path& folder, ScanFormat* fo
   } else if (map.Has("invalid")) {
     format->text.missing.push_back(map.Text("invalid"));
   }
-  if (map.Has("text")) ReadTextFormat(map.Map("text"), &format->text);
-  if (!map.Has("where")) return;
-  YamlMap where = map.Map("where");
-  for (const std::string& column : where.Keys()) format->text.where.emplace_back(column, where.Text(column));
+}
+
+Result<std::vector<std::pair<size_t, std::string>>> ChooseWhere(const ScanFormat& format,
+                                                                const std::vector<std::string>& found,
+                                                                const std::string& place) {
+  std::vector<std::pair<size_t, std::string>> where;
+  for (const auto& [name, value] : format.text.where) {
+    ScanFormat only;
+    only.columns = {{name, Dimension::kNone}};
+    SCANCAL_ASSIGN_OR_RETURN(const auto column, ChooseColumns(only, found, place + ": where"));
+    where.emplace_back(column.front().index, value);
+  }
+  return where;
 }
 
 Error NoPoints(const ScanFormat& format, int64_t lines_in_file) {

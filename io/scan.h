@@ -81,6 +81,9 @@ struct ScanBatch {                           // equally long columns, in the ord
 // What a data set, or a target of its own, says of its files: `format`, `columns`, `angle`, `invalid`, `text`, `where`.
 // folder: where a file of angles counts from.
 void ReadFormat(YamlMap map, const std::filesystem::path& folder, ScanFormat* format);
+// Of them those that a table of few lines has as well: `columns`; `text` and `where`.
+void ReadColumnNames(YamlMap map, ScanFormat* format);
+void ReadTextFormat(YamlMap map, ScanFormat* format);
 
 // Delimited text in any dialect (FindHead), the same with a profile a line (layout), .npy (float64 | float32, C order,
 // shape (points, columns)), what instruments write (FindFileKind); by content, layout, then extension. Missing points
@@ -130,6 +133,11 @@ struct ChosenColumn {
 // own; empty: none.
 Result<std::vector<ChosenColumn>> ChooseColumns(const ScanFormat& format, const std::vector<std::string>& found,
                                                 const std::string& place, const std::vector<std::string>& units = {});
+
+// The columns of format.text.where in a file with these names, and their values.
+Result<std::vector<std::pair<size_t, std::string>>> ChooseWhere(const ScanFormat& format,
+                                                                const std::vector<std::string>& found,
+                                                                const std::string& place);
 
 // The unit of `wanted` if `found` is its name, plain ("y", in which case it is that of its own row, or the declared
 // one) or with a unit ("y_mm", "Y [mm]", "y (um)", "z/mm"); else empty.

@@ -34,19 +34,8 @@ class CsvReader : public ScanReader {
             std::count(format_.more_invalid.begin(), format_.more_invalid.end(), number));
   }
   // The columns of `where`, and the values that rows are wanted with.
-  Result<std::vector<std::pair<size_t, std::string>>> WhereIn(const std::vector<std::string>& header) const {
-    std::vector<std::pair<size_t, std::string>> where;
-    for (const auto& [name, value] : format_.text.where) {
-      ScanFormat only;
-      only.columns = {{name, Dimension::kNone}};
-      const auto column = ChooseColumns(only, header, text_.Place() + ": where");
-      if (!column.ok()) return column.error();
-      where.emplace_back(column->front().index, value);
-    }
-    return where;
-  }
   Result<void> KeepWhere(const std::vector<std::string>& header) {
-    SCANCAL_ASSIGN_OR_RETURN(auto where, WhereIn(header));
+    SCANCAL_ASSIGN_OR_RETURN(auto where, ChooseWhere(format_, header, text_.Place()));
     text_.KeepWhere(std::move(where));
     return {};
   }

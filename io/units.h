@@ -7,7 +7,7 @@
 
 namespace scancal {
 
-inline constexpr double kDegree = std::numbers::pi / 180;  // rad
+inline constexpr double kTurn_rad = 2 * std::numbers::pi, kDegree = std::numbers::pi / 180;  // rad
 
 enum class Dimension { kNone, kLength, kAngle };
 

@@ -2,15 +2,14 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
+#include "io/input_file.h"
 #include "io/message.h"
+#include "models/chain/urdf.h"
 #include "models/scanner.h"
 
 namespace scancal {
 namespace {
-
-constexpr double kTurn_rad = 2 * std::numbers::pi;
 
 // Degrees declared as radians, and the other way round: nobody builds an axis at 1.5708 degrees.
 void CheckAngle(double angle_rad, const char* key, YamlMap* row) {
@@ -40,13 +39,9 @@ bool IsLinkName(const std::string& name) {
 
 std::string JointColumn(size_t joint) { return "q" + std::to_string(joint + 1); }
 
-}  // namespace
-
-std::vector<Link> ReadLinks(YamlMap top, const Units& units) {
-  std::vector<Link> links;
-  if (!top.Has("robot")) return links;
-  YamlMap robot = top.Map("robot");
+std::vector<Link> ReadLinks(YamlMap robot, const Units& units) {
   using enum Dimension;
+  std::vector<Link> links;
   for (YamlMap row : robot.Maps("links")) {
     const auto length = [&](const char* key) { return row.Number(key) * units.Of(kLength); };
     const auto angle = [&](const char* key, std::optional<double> otherwise = {}) {
@@ -56,19 +51,64 @@ std::vector<Link> ReadLinks(YamlMap top, const Units& units) {
     };
     links.push_back({angle("theta", 0), length("d"), length("a"), angle("alpha"), angle("beta", 0)});
   }
-  CheckReach(links, &robot);
   return links;
 }
 
-Eigen::Vector3d ReadGravity(YamlMap top) {
-  Eigen::Vector3d gravity = -Eigen::Vector3d::UnitZ();
-  if (!top.Has("robot")) return gravity;
-  YamlMap robot = top.Map("robot");
-  if (!robot.Has("gravity")) return gravity;
+Eigen::Vector3d ReadGravity(YamlMap robot) {
+  if (!robot.Has("gravity")) return -Eigen::Vector3d::UnitZ();
   YamlMap direction = robot.Map("gravity");
-  gravity = {direction.Number("x", 0), direction.Number("y", 0), direction.Number("z", 0)};
+  const Eigen::Vector3d gravity(direction.Number("x", 0), direction.Number("y", 0), direction.Number("z", 0));
   if (!(gravity.norm() > 0)) robot.Fail("gravity", "expected its direction in the base, for example {z: -1}");
   return gravity.normalized();
+}
+
+Result<void> TakeUrdf(const Dataset& dataset, YamlMap robot, Arm* arm) {
+  constexpr int64_t kLargest = int64_t{32} << 20;  // bytes
+  const std::string name = robot.Text("urdf"), base = robot.Text("base", ""), tip = robot.Text("tip", "");
+  arm->urdf_file = dataset.file.parent_path() / name;
+  arm->urdf = dataset.urdf;
+  if (arm->urdf.empty()) {
+    SCANCAL_ASSIGN_OR_RETURN(arm->urdf, ReadText(arm->urdf_file, kLargest));
+  }
+  SCANCAL_ASSIGN_OR_RETURN(const auto joints, ReadUrdf(arm->urdf, arm->urdf_file.string(), base, tip));
+  SCANCAL_ASSIGN_OR_RETURN(UrdfLinks found, LinksOfUrdf(joints, arm->urdf_file.string()));
+  arm->links = std::move(found.links);
+  arm->joints = std::move(found.joints);
+  arm->base_from_first = found.base_from_first;
+  arm->gravity = found.base_from_first.linear().transpose() * arm->gravity;
+  return {};
+}
+
+}  // namespace
+
+Result<Arm> ReadArm(const Dataset& dataset) {
+  Arm arm;
+  YamlMap top = dataset.yaml;
+  if (!top.Has("robot")) return arm;
+  YamlMap robot = top.Map("robot");
+  arm.gravity = ReadGravity(robot);
+  if (robot.Has("urdf")) {
+    if (robot.Has("links")) {
+      robot.Fail("links", "expected links or a urdf, not both");
+      return arm;
+    }
+    SCANCAL_RETURN_IF_ERROR(TakeUrdf(dataset, robot, &arm));
+  } else {
+    arm.links = ReadLinks(robot, dataset.units);
+  }
+  CheckReach(arm.links, &robot);
+  arm.couplings = ReadCouplings(top, arm.links.size());
+  return arm;
+}
+
+void KeepUrdf(const Arm& arm, Json* data) {
+  if (!arm.urdf.empty()) (*data)["urdf"] = arm.urdf;
+}
+
+Dataset WithUrdf(const Dataset& dataset, const Json& data) {
+  Dataset with = dataset;
+  if (data.contains("urdf") && data["urdf"].is_string()) with.urdf = data["urdf"].get<std::string>();
+  return with;
 }
 
 Result<void> SetSystematic(const InfluenceSetting& setting, const Dataset& dataset, std::span<Quantity> quantities) {
@@ -151,6 +191,88 @@ Result<void> SetNoise(const InfluenceSetting& setting, const Dataset& dataset, c
   return {};
 }
 
+TableDeclaration ReadTableDeclaration(YamlMap map, const std::string& key, const Dataset& dataset,
+                                      const std::vector<TableColumn>& columns, bool with_turns) {
+  TableDeclaration table;
+  table.format.units = dataset.units;
+  const bool is_map = map.IsMap(key);
+  YamlMap own = is_map ? map.Map(key) : YamlMap();
+  if (with_turns && own.Has("orientation")) {
+    table.names_orientation = true;
+    auto named = Orientation::Named(own.Text("orientation"));
+    if (named.ok()) table.orientation = *std::move(named);
+    else own.Fail("orientation", named.error().message);
+  }
+  for (const TableColumn& column : columns) table.format.columns.push_back({column.name, column.dimension});
+  for (const TableColumn& column : table.orientation.Columns(true, ""))
+    if (with_turns) table.format.columns.push_back({column.name, column.dimension});
+  YamlMap top = dataset.yaml;
+  if (top.IsMap("columns")) {
+    YamlMap names = top.Map("columns");
+    for (const ScanColumn& column : table.format.columns)
+      if (names.Has(column.name)) table.format.names[column.name] = names.Text(column.name);
+  } else if (top.Has("columns")) {
+    top.Fail("columns", "expected a mapping of names, {q1: A1}; names in the order of a file belong to one table: " +
+                            key + ": {file: ..., columns: [...]}");
+  }
+  ReadTextFormat(top, &table.format);
+  ReadTextFormat(own, &table.format);
+  ReadColumnNames(own, &table.format);
+  if (own.Has("units")) table.format.units = ReadUnits(own.Map("units"), dataset.units);
+  const std::string file = is_map ? own.Text("file") : map.Text(key);
+  if (file.empty()) map.Fail(key, "expected the path of a table");
+  table.format.path = dataset.file.parent_path() / file;
+  return table;
+}
+
+void CheckColumnNames(YamlMap top, const std::vector<const TableDeclaration*>& tables) {
+  if (!top.IsMap("columns")) return;
+  YamlMap names = top.Map("columns");
+  for (const std::string& name : names.Keys()) {
+    const bool known = std::any_of(tables.begin(), tables.end(),
+                                   [&](const TableDeclaration* table) { return table->format.names.contains(name); });
+    if (!known) names.Fail(name, "no column has this name here; the file's own name stands behind the colon");
+  }
+}
+
+std::vector<Coupling> ReadCouplings(YamlMap top, size_t joints) {
+  std::vector<Coupling> couplings;
+  if (!top.Has("robot")) return couplings;
+  YamlMap robot = top.Map("robot");
+  if (!robot.Has("coupled")) return couplings;
+  YamlMap coupled = robot.Map("coupled");
+  for (const std::string& name : coupled.Keys()) {
+    std::string text = coupled.Text(name);
+    std::erase(text, ' ');
+    std::optional<Coupling> found;
+    for (size_t joint = 0; joint < joints; ++joint)
+      for (size_t with = 0; with < joints; ++with)
+        for (const char sign : {'+', '-'})
+          if (joint != with && name == JointColumn(joint) && text == name + sign + JointColumn(with))
+            found = Coupling{joint, with, sign == '+' ? 1.0 : -1.0};
+    if (found) couplings.push_back(*found);
+    else
+      coupled.Fail(name, fmt::format("expected by what a joint turns that is coupled to another, {{q3: q3 + q2}} or "
+                                     "{{q3: q3 - q2}}, of q1 to q{}",
+                                     joints));
+  }
+  return couplings;
+}
+
+std::string Said(const std::vector<Coupling>& couplings) {
+  std::string text;
+  for (const Coupling& each : couplings)
+    text += fmt::format(" Joint {} turns by {} {} {}.", each.joint + 1, JointColumn(each.joint),
+                        each.times > 0 ? '+' : '-', JointColumn(each.with));
+  return text;
+}
+
+std::vector<double> Uncoupled(const std::vector<double>& shown, const std::vector<Coupling>& couplings) {
+  std::vector<double> joints = shown;
+  for (const Coupling& each : couplings) joints[each.joint] += each.times * shown[each.with];
+  return joints;
+}
+
 std::vector<TableColumn> JointColumns(size_t joints, const std::string& remedy) {
   std::vector<TableColumn> columns;
   for (size_t k = 0; k < joints; ++k)
@@ -161,17 +283,20 @@ std::vector<TableColumn> JointColumns(size_t joints, const std::string& remedy) 
 
 Result<void> CheckJoints(const Table& table, size_t joints) {
   if (table.Has(JointColumn(joints)))
-    return Error{table.name() + ": found the column " + JointColumn(joints) + ", expected " + std::to_string(joints) +
-                 " joints, one a row of robot: links"};
+    return Error{table.name() + ": found the column " + table.Called(JointColumn(joints)) + ", expected " +
+                 std::to_string(joints) + " joints, one a row of robot: links"};
   double largest = 0;
   for (size_t k = 0; k < joints; ++k) {
     const std::vector<double>& angles = table.Numbers(JointColumn(k));
     for (size_t row = 0; row < table.rows(); ++row) {
-      if (std::abs(angles[row]) > 2 * kTurn_rad)
-        return table.Wrong(row, JointColumn(k),
-                           fmt::format("that is {:.4g} rad, expected two turns at most; are these degrees? See units: "
-                                       "angle, or name the column {}_deg",
-                                       angles[row], JointColumn(k)));
+      if (std::abs(angles[row]) > 2 * kTurn_rad) {
+        const std::string pose = table.Has("pose") ? " in pose " + Quoted(table.Text("pose", row)) : "";
+        return table.Wrong(
+            row, JointColumn(k),
+            fmt::format("that is {:.4g} rad{}, expected two turns at most; are these degrees? See units: "
+                        "angle, or name the column {}_deg",
+                        angles[row], pose, JointColumn(k)));
+      }
       largest = std::max(largest, std::abs(angles[row]));
     }
   }
@@ -183,10 +308,10 @@ Result<void> CheckJoints(const Table& table, size_t joints) {
   return {};
 }
 
-std::vector<double> JointsOf(const Table& table, size_t row, size_t joints) {
+std::vector<double> JointsOf(const Table& table, size_t row, size_t joints, const std::vector<Coupling>& couplings) {
   std::vector<double> angles;
   for (size_t k = 0; k < joints; ++k) angles.push_back(table.Number(JointColumn(k), row));
-  return angles;
+  return Uncoupled(angles, couplings);
 }
 
 }  // namespace scancal

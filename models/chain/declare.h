@@ -1,24 +1,50 @@
 // What a dataset.yaml and its tables say of a robot's links and joints.
 #pragma once
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 #include "io/dataset.h"
+#include "io/json_file.h"
 #include "io/table.h"
 #include "models/chain/chain.h"
+#include "models/chain/orientation.h"
 
 namespace scancal {
 
 // Reach of any robot, mm: outside of it the unit is another.
 inline constexpr double kLeastReach_mm = 20, kLargestReach_mm = 20'000;
 
-// robot: {links: [{theta: 0, d: 333, a: 0, alpha: -90, beta: 0}, ...]}, base to flange, in the data set's units; theta
-// and beta are 0 where they are not given. None without `robot:`. Complains of units that no arm can have.
-std::vector<Link> ReadLinks(YamlMap top, const Units& units);
+// robot: {coupled: {q3: q3 + q2}}: joint 3 turns by what q3 and q2 read together, as where q3 is counted from the
+// horizontal.
+struct Coupling {
+  size_t joint = 0, with = 0;
+  double times = 1;
+};
+std::string Said(const std::vector<Coupling>& couplings);  // " joint 3 turns by q3 + q2."; empty: none
+std::vector<Coupling> ReadCouplings(YamlMap top, size_t joints);
+// Joints as the controller shows them to those that turn the links.
+std::vector<double> Uncoupled(const std::vector<double>& shown, const std::vector<Coupling>& couplings);
 
-// robot: {gravity: [0, 0, -1]}: its direction in the base, of any length; down along the base's z where it is not
-// given.
-Eigen::Vector3d ReadGravity(YamlMap top);
+// What `robot:` says.
+struct Arm {
+  std::vector<Link> links;                              // nominal, base to flange; none without `robot:`
+  Eigen::Vector3d gravity = -Eigen::Vector3d::UnitZ();  // its direction where the first link stands, a unit vector
+  std::vector<Coupling> couplings;
+  std::vector<std::string> joints;                                    // their names in a URDF
+  Eigen::Isometry3d base_from_first = Eigen::Isometry3d::Identity();  // of a URDF: where the first link stands
+  std::filesystem::path urdf_file;
+  std::string urdf;  // all that it says
+};
+// robot: {links: [{theta: 0, d: 333, a: 0, alpha: -90, beta: 0}, ...]}, in the data set's units, theta and beta 0 where
+// they are not given; or robot: {urdf: arm.urdf, base: base_link, tip: tool0} (LinksOfUrdf; base: the root by default),
+// which Dataset::urdf stands for. gravity: [0, 0, -1] is its direction in the base, of any length; down along z where
+// it is not given. coupled: see Coupling. Complains of units that no arm can have.
+Result<Arm> ReadArm(const Dataset& dataset);
+
+// calibration.json keeps the URDF, so that nothing else is needed to compute it again.
+void KeepUrdf(const Arm& arm, Json* data);
+Dataset WithUrdf(const Dataset& dataset, const Json& data);
 
 // parameters: {links: {estimate: 0, u_length: 0.5, u_angle: 0.1}}, in mm and rad.
 struct LinkSetting {
@@ -46,6 +72,20 @@ Result<void> SetSystematic(const InfluenceSetting& setting, const Dataset& datas
 Result<bool> SetJointTerms(const InfluenceSetting& setting, const Dataset& dataset, std::span<Quantity> terms,
                            std::vector<std::string>* known);
 
+// How a data set says where one of a robot's tables is and how it is written: `poses: poses.csv`, or with more,
+// `poses: {file: poses.csv, columns: {q1: A1}, text: {decimal: ","}, where: {Robot: R1}, units: {angle: rad}}`. What
+// stands at the top of the data set holds for all its tables; of `columns:` there each takes those that it has.
+struct TableDeclaration {
+  ScanFormat format;        // its path is empty where the data set has no such table
+  Orientation orientation;  // of the turns in it
+  bool names_orientation = false;
+};
+// columns: what the table may have, without turns. with_turns: `orientation:` may be declared.
+TableDeclaration ReadTableDeclaration(YamlMap map, const std::string& key, const Dataset& dataset,
+                                      const std::vector<TableColumn>& columns, bool with_turns = false);
+// Complains of names in `columns:` at the top that none of these tables has.
+void CheckColumnNames(YamlMap top, const std::vector<const TableDeclaration*>& tables);
+
 // Joint angles in tables: columns q1 .. qn, and one too many, which CheckJoints refuses. remedy: see TableColumn.
 std::vector<TableColumn> JointColumns(size_t joints, const std::string& remedy);
 
@@ -53,6 +93,7 @@ std::vector<TableColumn> JointColumns(size_t joints, const std::string& remedy);
 // are of the other unit.
 Result<void> CheckJoints(const Table& table, size_t joints);
 
-std::vector<double> JointsOf(const Table& table, size_t row, size_t joints);  // rad
+// Of a row, rad; couplings: as declared.
+std::vector<double> JointsOf(const Table& table, size_t row, size_t joints, const std::vector<Coupling>& couplings);
 
 }  // namespace scancal

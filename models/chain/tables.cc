@@ -1,6 +1,7 @@
 #include "models/chain/tables.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include "models/chain/declare.h"
 
 namespace scancal {
 namespace {
@@ -87,6 +88,7 @@ Result<Propagation> PropagateTool(const Calibration& calibration, const PointReq
     columns.push_back({axis, Dimension::kLength});
   }
   SCANCAL_ASSIGN_OR_RETURN(const auto readings, ReadPoints(points, columns));
+  const std::vector<Coupling> couplings = ReadCouplings(points.declared, links.size());
   const JointCovariance joint = JointOf(calibration);
   const auto at = [&](const std::vector<double>& reading, const std::string& moved, double by) {
     const auto value = [&](const std::string& name) {
@@ -94,7 +96,8 @@ Result<Propagation> PropagateTool(const Calibration& calibration, const PointReq
       return (parameter ? parameter->value : 0) + (name == moved ? by : 0);
     };
     const auto n = static_cast<std::ptrdiff_t>(links.size());
-    return point(value, {reading.begin(), reading.begin() + n}, Eigen::Vector3d::Map(&reading[links.size()]));
+    return point(value, Uncoupled({reading.begin(), reading.begin() + n}, couplings),
+                 Eigen::Vector3d::Map(&reading[links.size()]));
   };
   std::vector<Eigen::MatrixXd> derivatives;
   for (const std::vector<double>& reading : readings) {

@@ -30,8 +30,18 @@ Result<void> SetInfluence(const InfluenceSetting& setting, const Dataset& datase
   return SetNoise(setting, dataset, setting.name == "seat" ? "pose" : "", quantities);
 }
 
-ToolDeclaration ReadDeclaration(YamlMap yaml, const std::filesystem::path& folder, std::set<std::string>* names) {
+// Defaults for all locations stand at the top.
+ToolDeclaration ReadDeclaration(YamlMap yaml, const Dataset& dataset, size_t joints, std::set<std::string>* names) {
+  const std::filesystem::path folder = dataset.file.parent_path();
   ToolDeclaration tool;
+  tool.format.units = dataset.units;
+  for (const TableColumn& column : JointColumns(joints, ""))
+    tool.format.columns.push_back({column.name, column.dimension});
+  for (const YamlMap& map : {dataset.yaml, yaml}) {
+    ReadColumnNames(map, &tool.format);
+    ReadTextFormat(map, &tool.format);
+  }
+  if (yaml.Has("units")) tool.format.units = ReadUnits(yaml.Map("units"), dataset.units);
   tool.name = yaml.Text("name");
   if (tool.name.empty()) yaml.Fail("name", "expected a name");
   if (!names->insert(tool.name).second) yaml.Fail("name", "expected a name that no other location has");
@@ -44,10 +54,10 @@ ToolDeclaration ReadDeclaration(YamlMap yaml, const std::filesystem::path& folde
   return tool;
 }
 
-Result<Table> ReadTable(const std::filesystem::path& file, const Declaration& declaration, size_t joints) {
-  const char* remedy = declaration.columns.empty() ? "; if the file has no header, declare columns: [q1, q2, ...]" : "";
-  SCANCAL_ASSIGN_OR_RETURN(const Table table, Table::Read(file, JointColumns(joints, remedy), declaration.dataset.units,
-                                                          declaration.columns));
+Result<Table> ReadTable(const std::filesystem::path& file, ScanFormat format, size_t joints) {
+  const char* remedy = format.npy_columns.empty() ? "; if the file has no header, declare columns: [q1, q2, ...]" : "";
+  format.path = file;
+  SCANCAL_ASSIGN_OR_RETURN(const Table table, Table::Read(std::move(format), JointColumns(joints, remedy)));
   if (table.rows() < 2) return Error{table.name() + ": found 1 pose, expected two or more"};
   SCANCAL_RETURN_IF_ERROR(CheckJoints(table, joints));
   return table;
@@ -57,6 +67,7 @@ Result<Table> ReadTable(const std::filesystem::path& file, const Declaration& de
 
 std::vector<std::filesystem::path> Declaration::Files() const {
   std::vector<std::filesystem::path> files = {dataset.file};
+  if (!targets.empty() && !arm.urdf_file.empty()) files.push_back(arm.urdf_file);
   for (const auto* tools : {&targets, &check})
     for (const ToolDeclaration& tool : *tools) files.insert(files.end(), tool.sockets.begin(), tool.sockets.end());
   return files;
@@ -67,16 +78,18 @@ Result<Declaration> Declare(const Dataset& dataset) {
   result.dataset = dataset;
   YamlMap top = dataset.yaml;
   top.Map("robot");  // required
-  result.gravity = ReadGravity(top);
-  result.model = Model(ReadLinks(top, dataset.units));
+  SCANCAL_ASSIGN_OR_RETURN(result.arm, ReadArm(dataset));
+  result.gravity = result.arm.gravity;
+  result.model = Model(result.arm.links);
   Model& model = result.model;
-  if (top.Has("columns")) result.columns = top.Texts("columns");
+  const size_t joints = model.links().size();
   std::set<std::string> names;
-  const std::filesystem::path folder = dataset.file.parent_path();
-  for (const YamlMap& tool : top.Maps("targets")) result.targets.push_back(ReadDeclaration(tool, folder, &names));
+  for (const YamlMap& tool : top.Maps("targets"))
+    result.targets.push_back(ReadDeclaration(tool, dataset, joints, &names));
   if (result.targets.empty()) top.Fail("targets", "expected at least one location of the tool");
   if (top.Has("check"))
-    for (const YamlMap& tool : top.Maps("check")) result.check.push_back(ReadDeclaration(tool, folder, &names));
+    for (const YamlMap& tool : top.Maps("check"))
+      result.check.push_back(ReadDeclaration(tool, dataset, joints, &names));
   const std::span<Quantity> quantities(&model.quantity(0), model.quantities().size());
   const LinkSetting links = ReadLinkSetting(dataset);
   SCANCAL_RETURN_IF_ERROR(top.Finish());
@@ -93,8 +106,9 @@ Result<Model::Target> ReadTool(const ToolDeclaration& tool, const Declaration& d
   target.name = tool.name;
   const size_t joints = declaration.model.links().size();
   for (const int socket : {0, 1}) {
-    SCANCAL_ASSIGN_OR_RETURN(const Table table, ReadTable(tool.sockets[socket], declaration, joints));
-    for (size_t row = 0; row < table.rows(); ++row) target.views.push_back({JointsOf(table, row, joints), socket});
+    SCANCAL_ASSIGN_OR_RETURN(const Table table, ReadTable(tool.sockets[socket], tool.format, joints));
+    for (size_t row = 0; row < table.rows(); ++row)
+      target.views.push_back({JointsOf(table, row, joints, declaration.arm.couplings), socket});
   }
   SetTerms(declaration.model.links(), declaration.gravity, &target);
   return target;

@@ -138,7 +138,8 @@ Scanner::Scanner(Declaration declaration, std::vector<Model::Target> targets, st
 std::string Scanner::Describe() const {
   return Opening(declaration_.dataset, fmt::format("flange-ball, {} joints", declaration_.model.links().size())) +
          fmt::format("; sockets {:g} mm apart; {} locations of the tool with {} poses, {} more with {} poses held out.",
-                     Spacing(), targets_.size(), Poses(targets_), check_.size(), Poses(check_));
+                     Spacing(), targets_.size(), Poses(targets_), check_.size(), Poses(check_)) +
+         Said(declaration_.arm.couplings);
 }
 
 std::vector<std::filesystem::path> Scanner::Files() const { return declaration_.Files(); }

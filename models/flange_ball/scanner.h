@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 #include "io/result.h"
+#include "models/chain/declare.h"
 #include "models/flange_ball.h"
 #include "models/scanner.h"
 #include "solver/calibrate.h"
@@ -48,13 +49,14 @@ Robot RobotOf(const std::vector<Link>& nominal, const Solution& solution);
 struct ToolDeclaration {  // one location of the tool
   std::string name;
   std::array<std::filesystem::path, 2> sockets;  // joint angles with the ball in socket 0, in socket 1
+  ScanFormat format = {};                        // of both
 };
 
 struct Declaration {
   Dataset dataset;
   Eigen::Vector3d gravity = -Eigen::Vector3d::UnitZ();
-  Model model{{}};                              // roles, values and u as declared
-  std::vector<std::string> columns;             // of files without a header; empty: files have one
+  Model model{{}};  // roles, values and u as declared
+  Arm arm;
   std::vector<ToolDeclaration> targets, check;  // check: not used in the calibration
   std::vector<std::filesystem::path> Files() const;
 };
@@ -62,7 +64,8 @@ struct Declaration {
 // Takes every key of the data set:
 //
 //     robot: {links: [...]}           nominal, base to flange
-//     columns: [q1_rad, q2_rad, ...]  of joint files without a header
+//     columns: [q1_rad, q2_rad, ...]  of joint files without a header, or {q1: A1} of other names; text, where: as
+//                                     of scans; all of them for all files, or in one target
 //     targets: [{name: front, sockets: [front/hole_0.csv, front/hole_1.csv]}, ...]
 //     check: [...]                    further ones, held out
 //     parameters: {spacing: {consider: 50, u: 0.05}, links: {estimate: 0, u_length: 1, u_angle: 1}, theta_6: hold}

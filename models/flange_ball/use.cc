@@ -60,14 +60,16 @@ Result<Robot> CalibratedRobot(const std::vector<Link>& nominal, const Calibratio
 }  // namespace
 
 Result<Json> Scanner::Data() const {
-  return Json{{"dataset", declaration_.dataset.text},
-              {"layout", kLayout},
-              {"targets", ToolsToJson(targets_)},
-              {"check", ToolsToJson(check_)}};
+  Json data = {{"dataset", declaration_.dataset.text},
+               {"layout", kLayout},
+               {"targets", ToolsToJson(targets_)},
+               {"check", ToolsToJson(check_)}};
+  KeepUrdf(declaration_.arm, &data);
+  return data;
 }
 
 Result<std::unique_ptr<scancal::Scanner>> Reload(const Dataset& dataset, const Json& data, const std::string& file) {
-  SCANCAL_ASSIGN_OR_RETURN(Declaration declaration, Declare(dataset));
+  SCANCAL_ASSIGN_OR_RETURN(Declaration declaration, Declare(WithUrdf(dataset, data)));
   const size_t joints = declaration.model.links().size();
   SCANCAL_ASSIGN_OR_RETURN(auto targets, ToolsFromJson(data, "targets", declaration.targets, joints, file));
   SCANCAL_ASSIGN_OR_RETURN(auto check, ToolsFromJson(data, "check", declaration.check, joints, file));

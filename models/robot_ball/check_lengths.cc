@@ -27,15 +27,9 @@ struct Pairs {
   std::vector<BallPair> pairs;
 };
 
-Result<Pairs> ReadPairs(const std::filesystem::path& path, const Units& units) {
-  using enum Dimension;
+Result<Pairs> ReadPairs(const TableDeclaration& declared) {
   Pairs result;
-  SCANCAL_ASSIGN_OR_RETURN(result.table, Table::Read(path,
-                                                     {{"ball_a"},
-                                                      {"ball_b"},
-                                                      {"distance", Cells::kNumber, kLength},
-                                                      {"u", Cells::kNumberOrNothing, kLength, false}},
-                                                     units));
+  SCANCAL_ASSIGN_OR_RETURN(result.table, Table::Read(declared.format, DistanceColumns()));
   const Table& table = result.table;
   const auto index = [&](const std::string& ball) {
     const auto found = std::find(result.balls.begin(), result.balls.end(), ball) - result.balls.begin();
@@ -91,13 +85,19 @@ double RatioWithinAPose(const Station& station, const BallPair& pair) {
 
 }  // namespace
 
-Result<CheckLengths> ReadCheck(const CheckFiles& paths, const std::filesystem::path& folder,
-                               const std::vector<Link>& links, const Units& units, double ball_diameter) {
+std::vector<TableColumn> DistanceColumns() {
+  using enum Dimension;
+  return {
+      {"ball_a"}, {"ball_b"}, {"distance", Cells::kNumber, kLength}, {"u", Cells::kNumberOrNothing, kLength, false}};
+}
+
+Result<CheckLengths> ReadCheck(const CheckFiles& files, const std::filesystem::path& folder,
+                               const std::vector<Link>& links, const std::vector<Coupling>& couplings,
+                               double ball_diameter) {
   CheckLengths result;
-  SCANCAL_ASSIGN_OR_RETURN(const Pairs pairs, ReadPairs(paths.distances, units));
-  SCANCAL_ASSIGN_OR_RETURN(Poses poses, ReadPoses(paths.poses, links, units));
-  SCANCAL_ASSIGN_OR_RETURN(Observations observations,
-                           ReadObservations(paths.observations, folder, units, ball_diameter));
+  SCANCAL_ASSIGN_OR_RETURN(const Pairs pairs, ReadPairs(files.distances));
+  SCANCAL_ASSIGN_OR_RETURN(Poses poses, ReadPoses(files.poses, links, couplings));
+  SCANCAL_ASSIGN_OR_RETURN(Observations observations, ReadObservations(files.observations, folder, ball_diameter));
   SCANCAL_RETURN_IF_ERROR(AttachBalls(observations, pairs.balls, pairs.table.name(), 0, &poses));
   result.files = std::move(observations.files);
   result.warnings = std::move(observations.warnings);

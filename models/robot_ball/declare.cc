@@ -15,36 +15,59 @@ namespace {
 constexpr double kNoiseOfTarget_mm = 1e-3;
 
 struct Files {
-  std::filesystem::path poses, observations, artifact;  // artifact: empty where a tool's points are found from the data
+  TableDeclaration poses, observations, artifact;  // artifact: none where a tool's points are found from the data
   std::optional<CheckFiles> check;
   int every = 0;  // this pose of the table is held out, and so on; 0: none
 };
 
-std::filesystem::path FileAt(YamlMap* yaml, const char* key, const std::filesystem::path& folder) {
-  const std::string name = yaml->Text(key);
-  if (name.empty()) yaml->Fail(key, "expected the path of a table");
-  return folder / name;
-}
-
-Files ReadFiles(YamlMap top, const std::filesystem::path& folder, bool measured_in_world) {
-  Files files{FileAt(&top, "poses", folder), FileAt(&top, "observations", folder), {}, {}};
-  if (!measured_in_world) {
-    files.artifact = FileAt(&top, "artifact", folder);
-  } else if (const std::string tool = top.Text("tool", "free"); tool != "free") {
-    files.artifact = folder / tool;
+// What poses and observations are declared to be.
+class TableReader {
+ public:
+  TableReader(const Dataset& dataset, size_t joints, bool measured_in_world)
+      : dataset_(dataset), joints_(joints), measured_in_world_(measured_in_world) {}
+  TableDeclaration Poses(const YamlMap& map) const {
+    return ReadTableDeclaration(map, "poses", dataset_, PoseColumns(joints_, !measured_in_world_), joints_ == 0);
   }
+  TableDeclaration Observations(const YamlMap& map) const {
+    return ReadTableDeclaration(map, "observations", dataset_,
+                                measured_in_world_ ? TrackedColumns() : ObservationColumns(), measured_in_world_);
+  }
+
+ private:
+  const Dataset& dataset_;
+  size_t joints_;
+  bool measured_in_world_;
+};
+
+Files ReadFiles(const Dataset& dataset, size_t joints, bool measured_in_world) {
+  YamlMap top = dataset.yaml;
+  const TableReader reader(dataset, joints, measured_in_world);
+  Files files{reader.Poses(top), reader.Observations(top), {}, {}};
+  const bool is_free = measured_in_world && !top.IsMap("tool") && top.Text("tool", "free") == "free";
+  if (!is_free)
+    files.artifact = ReadTableDeclaration(top, measured_in_world ? "tool" : "artifact", dataset, ArtifactColumns());
+  std::vector<const TableDeclaration*> tables = {&files.poses, &files.observations, &files.artifact};
   if (top.Has("check")) {
     YamlMap check = top.Map("check");
     if (check.Has("every")) {
       const double every = check.Number("every");
       if (every < 2 || every != std::floor(every)) check.Fail("every", "expected a whole number, 2 or more");
       files.every = static_cast<int>(every);
-      return files;
+    } else {
+      files.check = {reader.Poses(check), reader.Observations(check), {}};
+      if (!measured_in_world && check.Has("distances"))
+        files.check->distances = ReadTableDeclaration(check, "distances", dataset, DistanceColumns());
+      tables.insert(tables.end(), {&files.check->poses, &files.check->observations, &files.check->distances});
     }
-    files.check = {FileAt(&check, "poses", folder), FileAt(&check, "observations", folder), {}};
-    if (!measured_in_world && check.Has("distances")) files.check->distances = FileAt(&check, "distances", folder);
   }
+  CheckColumnNames(top, tables);
   return files;
+}
+
+// One file may hold two tables.
+void AddFile(const TableDeclaration& table, std::vector<std::filesystem::path>* files) {
+  const std::filesystem::path& path = table.format.path;
+  if (!path.empty() && std::find(files->begin(), files->end(), path) == files->end()) files->push_back(path);
 }
 
 double DiameterOf(YamlMap top, const Units& units) {
@@ -94,11 +117,17 @@ std::vector<std::string> SeenNames(const Observations& observations) {
   return names;
 }
 
-Result<Observations> ReadSeen(const std::filesystem::path& file, const std::filesystem::path& folder,
+// What was found of a table's text, and declared of its turns.
+void Echo(const Table& table, const TableDeclaration& declared, bool has_turns, std::string* echo) {
+  std::string text = table.dialect();
+  if (has_turns) text += (text.empty() ? "" : ", ") + ("turns as " + declared.orientation.name());
+  if (!text.empty()) *echo += (echo->empty() ? "" : "; ") + declared.format.path.filename().string() + ": " + text;
+}
+
+Result<Observations> ReadSeen(const TableDeclaration& declared, const std::filesystem::path& folder,
                               const Declaration& declaration) {
-  const Units& units = declaration.dataset.units;
-  if (declaration.data.measured_in_world) return ReadTracked(file, units);
-  return ReadObservations(file, folder, units, declaration.data.ball_diameter);
+  if (declaration.data.measured_in_world) return ReadTracked(declared);
+  return ReadObservations(declared, folder, declaration.data.ball_diameter);
 }
 
 std::vector<std::string> BallsOf(const Measurements& data) {
@@ -123,22 +152,25 @@ void HoldOut(int every, Measurements* data) {
 
 Result<void> TakeStations(const Files& files, const std::filesystem::path& folder, Declaration* result) {
   Measurements& data = result->data;
-  const Units& units = result->dataset.units;
-  std::string where = files.observations.string();  // the table of the balls
-  if (!files.artifact.empty()) {
-    SCANCAL_ASSIGN_OR_RETURN(const Artifact artifact, ReadArtifact(files.artifact, units));
+  const bool has_artifact = !files.artifact.format.path.empty();
+  std::string where = files.observations.format.path.string();  // the table of the balls
+  if (has_artifact) {
+    SCANCAL_ASSIGN_OR_RETURN(const Artifact artifact, ReadArtifact(files.artifact));
     TakeArtifact(artifact, result);
     where = artifact.table.name();
   }
-  SCANCAL_ASSIGN_OR_RETURN(Poses poses, ReadPoses(files.poses, data.links, units, !data.measured_in_world));
+  SCANCAL_ASSIGN_OR_RETURN(Poses poses,
+                           ReadPoses(files.poses, data.links, result->arm.couplings, !data.measured_in_world));
   SCANCAL_ASSIGN_OR_RETURN(const Observations observations, ReadSeen(files.observations, folder, *result));
-  const std::vector<std::string> balls = files.artifact.empty() ? SeenNames(observations) : BallsOf(data);
+  Echo(poses.table, files.poses, data.links.empty(), &result->echo);
+  Echo(observations.table, files.observations, !observations.balls.empty(), &result->echo);
+  const std::vector<std::string> balls = has_artifact ? BallsOf(data) : SeenNames(observations);
   const double declared = DeclaredInfluence(result->dataset, "ball");
   SCANCAL_RETURN_IF_ERROR(AttachBalls(observations, balls, where, declared, &poses));
   if (!observations.balls.empty()) {  // of a 6-DoF target: no measured points
     data.spheres = SpheresOfTarget();
     result->u_of_spheres.assign(data.spheres.size(), 0);
-  } else if (files.artifact.empty()) {
+  } else if (!has_artifact) {
     SCANCAL_ASSIGN_OR_RETURN(const Shape shape, ShapeOf(poses.stations, balls));
     data.spheres = shape.spheres;
     data.u_spheres = shape.u;
@@ -161,12 +193,12 @@ Result<void> TakeStations(const Files& files, const std::filesystem::path& folde
 Result<void> TakeHeldOut(const CheckFiles& files, const std::filesystem::path& folder, Declaration* result) {
   Measurements& data = result->data;
   SCANCAL_ASSIGN_OR_RETURN(Poses poses,
-                           ReadPoses(files.poses, data.links, result->dataset.units, !data.measured_in_world));
+                           ReadPoses(files.poses, data.links, result->arm.couplings, !data.measured_in_world));
   SCANCAL_ASSIGN_OR_RETURN(const Observations observations, ReadSeen(files.observations, folder, *result));
   SCANCAL_RETURN_IF_ERROR(
       AttachBalls(observations, BallsOf(data), "the calibration", DeclaredInfluence(result->dataset, "ball"), &poses));
   data.held_out = TakeSeenStations(&poses, &result->warnings);
-  result->files.insert(result->files.end(), {files.poses, files.observations});
+  result->files.insert(result->files.end(), {files.poses.format.path, files.observations.format.path});
   return {};
 }
 
@@ -189,9 +221,11 @@ std::optional<Eigen::Isometry3d> HeldHandEye(const Dataset& dataset) {
 Result<Files> TakeYaml(const Dataset& dataset, Declaration* result) {
   result->dataset = dataset;
   result->data.measured_in_world = dataset.model == kTracker;
-  const Files files = ReadFiles(dataset.yaml, dataset.file.parent_path(), result->data.measured_in_world);
-  result->data.links = ReadLinks(dataset.yaml, dataset.units);
-  result->data.gravity = ReadGravity(dataset.yaml);
+  SCANCAL_ASSIGN_OR_RETURN(result->arm, ReadArm(dataset));
+  result->data.links = result->arm.links;
+  result->data.gravity = result->arm.gravity;
+  const Files files = ReadFiles(dataset, result->data.links.size(), result->data.measured_in_world);
+  result->held_out_stand = files.every > 0;
   result->data.hand_eye = HeldHandEye(dataset);
   result->data.ball_diameter = DiameterOf(dataset.yaml, dataset.units);
   result->links = ReadLinkSetting(dataset);
@@ -288,16 +322,18 @@ Result<Declaration> Declare(const Dataset& dataset) {
   SCANCAL_ASSIGN_OR_RETURN(const Files files, TakeYaml(dataset, &result));
   const std::filesystem::path folder = dataset.file.parent_path();
   Measurements& data = result.data;
-  result.files = {dataset.file, files.poses, files.observations};
-  if (!files.artifact.empty()) result.files.push_back(files.artifact);
+  result.files = {dataset.file, files.poses.format.path};
+  for (const TableDeclaration* table : {&files.observations, &files.artifact}) AddFile(*table, &result.files);
+  if (!result.arm.urdf_file.empty()) result.files.push_back(result.arm.urdf_file);
   SCANCAL_RETURN_IF_ERROR(TakeStations(files, folder, &result));
-  if (files.check && files.check->distances.empty()) {
+  if (files.check && files.check->distances.format.path.empty()) {
     SCANCAL_RETURN_IF_ERROR(TakeHeldOut(*files.check, folder, &result));
   } else if (files.check) {
     SCANCAL_ASSIGN_OR_RETURN(CheckLengths check,
-                             ReadCheck(*files.check, folder, data.links, dataset.units, data.ball_diameter));
+                             ReadCheck(*files.check, folder, data.links, result.arm.couplings, data.ball_diameter));
     data.check = std::move(check.lengths);
-    result.files.insert(result.files.end(), {files.check->poses, files.check->observations, files.check->distances});
+    for (const TableDeclaration* table : {&files.check->poses, &files.check->observations, &files.check->distances})
+      AddFile(*table, &result.files);
     result.files.insert(result.files.end(), check.files.begin(), check.files.end());
     Append(check.warnings, &result.warnings);
   }

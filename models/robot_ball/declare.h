@@ -19,6 +19,9 @@ struct Declaration {
   std::vector<double> u_of_spheres;  // of each centre's coordinates, mm; 0: exactly known
   bool centres_have_u = false;       // the balls' noise was declared line by line
   LinkSetting links;
+  Arm arm;
+  bool held_out_stand = false;  // the poses held out are of the same stations: where calibration found the artifact
+  std::string echo;             // how its tables are written and read, in words
   std::vector<std::filesystem::path> files;  // all that were read, dataset.yaml first
   std::vector<Sentence> warnings;            // worth knowing
 };

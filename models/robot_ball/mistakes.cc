@@ -226,9 +226,11 @@ std::vector<Mistake> MistakesOfJoints(size_t joints) {
   };
   for (size_t j = 1; j < joints; ++j)
     for (const int sign : {-1, 1})
-      of_joints(fmt::format("{} is coupled to {}, as some controllers count: write {} {} {} in its place", name(j),
-                            name(j - 1), name(j), sign < 0 ? "-" : "+", name(j - 1)),
-                [=](std::vector<double>& q) { q[j] += sign * q[j - 1]; });
+      of_joints(
+          fmt::format("{0} is coupled to {1}, as some controllers count: declare robot: {{coupled: {{{0}: {0} {2} "
+                      "{1}}}}}",
+                      name(j), name(j - 1), sign < 0 ? "-" : "+"),
+          [=](std::vector<double>& q) { q[j] += sign * q[j - 1]; });
   for (size_t j = 0; j < joints; ++j)
     of_joints(fmt::format("{} turns the other way: change its sign", name(j)),
               [=](std::vector<double>& q) { q[j] = -q[j]; });

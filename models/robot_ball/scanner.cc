@@ -9,6 +9,7 @@
 #include "models/robot_ball/judge.h"
 #include "models/robot_ball/published.h"
 #include "models/robot_ball/start.h"
+#include "models/robot_ball/tables.h"
 
 namespace scancal::robot_ball {
 namespace {
@@ -91,24 +92,36 @@ void AddGeometry(const JointFit& fit, const Eigen::Vector3d& gravity, Calibratio
   }
 }
 
-// Mean distance of the points of a held-out station from where they lie, its artifact placed by them.
-double MeanDistance(const Measurements& data, const Kinematics& setup, const Station& station) {
-  Measurements held_out = data;
-  held_out.stations = {station};
-  const auto placed = StationsAt(held_out, setup);
-  if (!placed.ok()) return std::numeric_limits<double>::quiet_NaN();
+// Mean distance of the points of a held-out station from where they lie, its artifact at that place; of a 6-DoF target
+// that of its origin.
+double MeanDistance(const Measurements& data, const Kinematics& setup, const Station& station,
+                    const Eigen::Isometry3d& base_from_artifact) {
+  const bool of_target = IsTarget(data.spheres);
   double sum = 0, count = 0;
   for (const Model::View& view : station.views) {
     const Eigen::Isometry3d base_from_tool = BaseFromScanner(data, setup, view);
     for (const Model::SeenBall& ball : view.balls) {
-      sum += (base_from_tool * data.OnTool(ball) - placed->front().base_from_artifact * data.InWorld(ball)).norm();
+      if (of_target && ball.sphere != 0) continue;
+      sum += (base_from_tool * data.OnTool(ball) - base_from_artifact * data.InWorld(ball)).norm();
       ++count;
     }
   }
   return sum / count;
 }
 
-void AddCheck(const Measurements& data, const Kinematics& before, const Kinematics& after, Calibration* result) {
+// base_from_artifact of a held-out station: as the poses calibrated with say if it stands there, else as its own do.
+std::optional<Eigen::Isometry3d> PlaceOf(Measurements data, const Kinematics& setup, const Station& station,
+                                         bool stands) {
+  std::erase_if(data.stations, [&](const Station& each) { return each.name != station.name; });
+  if (!stands || data.stations.empty()) data.stations = {station};
+  const auto placed = StationsAt(data, setup);
+  if (!placed.ok()) return std::nullopt;
+  return placed->front().base_from_artifact;
+}
+
+void AddCheck(const Measurements& data, const Kinematics& before, const JointFit& fit, bool stands,
+              Calibration* result) {
+  const Kinematics after = fit.Found();
   for (const CheckLength& length : data.check) {
     result->check.names.push_back({length.name});
     result->check.u.push_back(length.u);
@@ -118,8 +131,15 @@ void AddCheck(const Measurements& data, const Kinematics& before, const Kinemati
   for (const Station& station : data.held_out) {
     result->check.names.push_back(Say(kHeldOut, station.name, station.views.size()));
     result->check.u.push_back(0);
-    result->check.before.push_back(MeanDistance(data, before, station));
-    result->check.after.push_back(MeanDistance(data, after, station));
+    const auto add = [&](const Kinematics& setup, const std::optional<Eigen::Isometry3d>& place,
+                         std::vector<double>* errors) {
+      errors->push_back(place ? MeanDistance(data, setup, station, *place) : std::numeric_limits<double>::quiet_NaN());
+    };
+    add(before, PlaceOf(data, before, station, stands), &result->check.before);
+    std::optional<Eigen::Isometry3d> place = PlaceOf(data, after, station, stands);
+    for (size_t t = 0; stands && t < fit.stations.size(); ++t)
+      if (fit.stations[t].name == station.name) place = fit.BaseFromArtifact(t);
+    add(after, place, &result->check.after);
   }
 }
 
@@ -144,7 +164,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   AddTables(data, fit, &result);
   SCANCAL_ASSIGN_OR_RETURN(const Kinematics before,
                            data.measured_in_world ? InitialHandEye(data) : VirtualPointHandEye(data));
-  AddCheck(data, before, fit.Found(), &result);
+  AddCheck(data, before, fit, declaration_.held_out_stand, &result);
   Judge(*screened, &result);
   return result;
 }
@@ -158,15 +178,19 @@ std::string Scanner::Describe() const {
   }
   const std::string arm =
       data.links.empty() ? "poses of the flange as given" : fmt::format("an arm of {} joints", data.links.size());
+  const std::string echo =
+      Said(declaration_.arm.couplings) + (declaration_.echo.empty() ? "" : " " + declaration_.echo + ".");
   if (data.measured_in_world)
     return Opening(declaration_.dataset, "robot seen by a tracker, " + arm) +
            fmt::format("; {} poses, {} sights of {} on the flange; {} poses held out.", poses, balls,
                        data.spheres.size() == 1 ? "one point" : fmt::format("{} points", data.spheres.size()),
-                       data.held_out.empty() ? 0 : data.held_out.front().views.size());
+                       data.held_out.empty() ? 0 : data.held_out.front().views.size()) +
+           echo;
   return Opening(declaration_.dataset, "robot with a scanner, " + arm) +
          fmt::format("; {} stations, {} poses, {} ball centres of an artifact of {} balls{}.", data.stations.size(),
                      poses, balls, data.spheres.size(),
-                     data.check.empty() ? "" : fmt::format("; {} known lengths for a check", data.check.size()));
+                     data.check.empty() ? "" : fmt::format("; {} known lengths for a check", data.check.size())) +
+         echo;
 }
 
 Result<std::unique_ptr<scancal::Scanner>> Load(const Dataset& dataset) {

@@ -5,147 +5,59 @@
 #include <cmath>
 #include <limits>
 #include "io/message.h"
-#include "io/scan.h"
 #include "models/chain/declare.h"
 #include "models/median.h"
-#include "models/sphere.h"
-#include "solver/dense.h"
 
 namespace scancal::robot_ball {
 namespace {
 
-constexpr Message<std::string_view, size_t, size_t, double> kPointsSetAside{
-    "robot_ball.points_set_aside",
-    "{}: {} of {} points on balls were set aside, farther than {} standard deviations from the sphere",
-    "{}: {} von {} Punkten auf Kugeln wurden ausgesondert, weiter als {} Standardabweichungen von der Kugel entfernt"};
 constexpr Message<std::string_view, size_t, std::string_view> kEmptyPoses{
     "robot_ball.empty_poses", "{}: no ball was seen from {} of its poses, which are left out: {}",
     "{}: Aus {} der Posen wurde keine Kugel gesehen, sie sind weggelassen: {}"};
 
-constexpr double kNormTolerance = 1e-3;  // a quaternion written with four digits
-const std::vector<std::string> kQuaternion = {"qx", "qy", "qz", "qw"};
-
-std::vector<TableColumn> PoseColumns(size_t joints, bool with_stations) {
-  std::vector<TableColumn> columns = {{"pose"}};
-  if (with_stations) columns.push_back({"station"});
-  if (joints > 0) {
-    const std::string remedy =
-        fmt::format("; robot: links declares {} joints, without it the poses are those of the flange", joints);
-    for (const TableColumn& column : JointColumns(joints, remedy)) columns.push_back(column);
-    return columns;
-  }
-  const char* remedy = "; joint angles need robot: links in dataset.yaml";
-  for (const char* axis : {"x", "y", "z"}) columns.push_back({axis, Cells::kNumber, Dimension::kLength, true, remedy});
-  for (const std::string& part : kQuaternion) columns.push_back({part, Cells::kNumber, Dimension::kNone, true, remedy});
+std::vector<TableColumn> Centre(bool required, const std::string& remedy = "") {
+  std::vector<TableColumn> columns;
+  for (const char* axis : {"x", "y", "z"})
+    columns.push_back({axis, Cells::kNumber, Dimension::kLength, required, remedy});
   return columns;
 }
 
-Result<Eigen::Isometry3d> FlangeOf(const Table& table, size_t row) {
-  const auto at = [&](const char* column) { return table.Number(column, row); };
-  const Eigen::Quaterniond turn(at("qw"), at("qx"), at("qy"), at("qz"));
-  if (!(std::abs(turn.norm() - 1) <= kNormTolerance))
-    return table.Wrong(row, "qx",
-                       fmt::format("the quaternion qx, qy, qz, qw has length {:.6g}, expected 1", turn.norm()));
-  Eigen::Isometry3d flange = Eigen::Isometry3d::Identity();
-  flange.linear() = turn.normalized().toRotationMatrix();
-  flange.translation() << at("x"), at("y"), at("z");
-  return flange;
+void Append(const std::vector<TableColumn>& more, std::vector<TableColumn>* columns) {
+  columns->insert(columns->end(), more.begin(), more.end());
 }
 
-using Points = std::vector<Eigen::Vector3d>;
-
-Result<Points> ReadPoints(const std::filesystem::path& path, const Units& units) {
-  ScanFormat format;
-  format.path = path;
-  format.units = units;
-  for (const char* axis : {"x", "y", "z"}) {
-    format.columns.push_back({axis, Dimension::kLength});
-    format.npy_columns.emplace_back(axis);
-  }
-  SCANCAL_ASSIGN_OR_RETURN(const auto reader, ScanReader::Open(format));
-  Points points;
-  ScanBatch batch;
-  for (;;) {
-    SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
-    if (!more) return points;
-    const auto x = static_cast<size_t>(batch.Find("x")), y = static_cast<size_t>(batch.Find("y")),
-               z = static_cast<size_t>(batch.Find("z"));
-    for (size_t i = 0; i < batch.size(); ++i)
-      points.emplace_back(batch.columns[x][i], batch.columns[y][i], batch.columns[z][i]);
-  }
+Eigen::Vector3d CentreAt(const Table& table, size_t row) {
+  return {table.Number("x", row), table.Number("y", row), table.Number("z", row)};
 }
 
-// Standard deviation across the plane that fits best.
-double Thickness(const Points& points) {
-  Eigen::MatrixXd rows(std::ssize(points), 3);
-  for (size_t i = 0; i < points.size(); ++i) rows.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
-  rows.rowwise() -= rows.colwise().mean().eval();
-  return SvdOf(rows).values[2] / std::sqrt(static_cast<double>(points.size()));
+// As the table says, or by the number of its line.
+std::vector<std::string> PoseNames(const Table& table) {
+  if (table.Has("pose")) return table.Texts("pose");
+  std::vector<std::string> names;
+  for (size_t row = 1; row <= table.rows(); ++row) names.push_back(std::to_string(row));
+  return names;
 }
 
-// Why the sphere is not the ball; empty: nothing found.
-std::string Doubt(const Points& points, const RobustSphere& sphere, double ball_diameter) {
-  constexpr double kFlat = 3;  // the cap is no higher than its noise
-  constexpr double kSameRadius = 0.05;
-  const SphereFit free = FitRobustSphere(points).fit;
-  if (ball_diameter > 0 && free.doubt.empty()) {
-    const double off = 2 * free.radius / ball_diameter - 1, u = 2 * std::sqrt(free.covariance(3, 3)) / ball_diameter;
-    if (std::abs(off) > kSameRadius + 5 * u)
-      return fmt::format(
-          "the points lie on a sphere of diameter {:.5g} mm, expected ball_diameter, {:.5g} mm; are both "
-          "in the declared unit?",
-          2 * free.radius, ball_diameter);
-  }
-  if (!sphere.fit.doubt.empty()) return sphere.fit.doubt;
-  Points on;
-  for (size_t i = 0; i < points.size(); ++i)
-    if (!sphere.off[i]) on.push_back(points[i]);
-  if (Thickness(on) <= kFlat * sphere.fit.sigma)
-    return "the points lie on a plane within their noise, which leaves the side of the centre open; one laser line "
-           "sees "
-           "only a circle, expected points on a cap";
-  if (2 * sphere.set_aside > std::ssize(points))
-    return fmt::format("{} of {} points do not lie on the sphere, expected less than half", sphere.set_aside,
-                       points.size());
-  return "";
-}
-
-// Reads the file of every row and sets centre and covariance. Refused: a sphere that the points do not determine, a
-// declared diameter that they contradict, points of one laser line (a circle, which leaves the centre two-fold).
-Result<void> FitBalls(const std::filesystem::path& folder, const Units& units, double ball_diameter,
-                      Observations* observations) {
-  const Table& table = observations->table;
-  SphereChoice choice;
-  if (ball_diameter > 0) choice.radius = KnownRadius{ball_diameter / 2, 0};
-  size_t points_read = 0, set_aside = 0;
+Result<std::vector<Eigen::Isometry3d>> FramesOf(const Table& table, const Orientation& orientation) {
+  SCANCAL_ASSIGN_OR_RETURN(const std::vector<Eigen::Matrix3d> turns, orientation.Read(table));
+  std::vector<Eigen::Isometry3d> frames;
   for (size_t row = 0; row < table.rows(); ++row) {
-    const std::filesystem::path path = folder / table.Text("file", row);
-    SCANCAL_ASSIGN_OR_RETURN(const Points points, ReadPoints(path, units));
-    const RobustSphere sphere = FitRobustSphere(points, choice);
-    if (const std::string doubt = Doubt(points, sphere, ball_diameter); !doubt.empty())
-      return table.Wrong(row, "file", path.string() + ": " + doubt);
-    observations->seen[row].centre = sphere.fit.centre;
-    observations->seen[row].covariance = sphere.fit.covariance.topLeftCorner<3, 3>();
-    observations->files.push_back(path);
-    points_read += points.size();
-    set_aside += static_cast<size_t>(sphere.set_aside);
+    Eigen::Isometry3d& frame = frames.emplace_back(Eigen::Isometry3d::Identity());
+    frame.linear() = turns[row];
+    frame.translation() = CentreAt(table, row);
   }
-  if (set_aside > 0)
-    observations->warnings.push_back(Say(kPointsSetAside, table.name(), set_aside, points_read, kOffSphere));
-  return {};
+  return frames;
 }
 
-Result<Table> ReadBallTable(const std::filesystem::path& path, const Units& units) {
-  using enum Dimension;
-  SCANCAL_ASSIGN_OR_RETURN(Table table, Table::Read(path,
-                                                    {{"pose"},
-                                                     {"ball"},
-                                                     {"x", Cells::kNumber, kLength, false},
-                                                     {"y", Cells::kNumber, kLength, false},
-                                                     {"z", Cells::kNumber, kLength, false},
-                                                     {"u", Cells::kNumberOrNothing, kLength, false},
-                                                     {"file", Cells::kText, kNone, false}},
-                                                    units));
+// The column u of a line, mm; 0: it says nothing.
+Result<double> NoiseAt(const Table& table, size_t row) {
+  const double u = table.Has("u") ? table.Number("u", row) : std::numeric_limits<double>::quiet_NaN();
+  if (u <= 0) return table.Wrong(row, "u", "expected a standard uncertainty above 0, or nothing");
+  return std::isnan(u) ? 0 : u;
+}
+
+Result<Table> ReadBallTable(const ScanFormat& format) {
+  SCANCAL_ASSIGN_OR_RETURN(Table table, Table::Read(format, ObservationColumns()));
   const bool centres = table.Has("x") && table.Has("y") && table.Has("z");
   if (centres == table.Has("file"))
     return Error{table.name() +
@@ -191,15 +103,15 @@ Error SeenTwice(const Observations& observations, size_t row) {
 
 }  // namespace
 
-Result<Artifact> ReadArtifact(const std::filesystem::path& path, const Units& units) {
-  using enum Dimension;
-  SCANCAL_ASSIGN_OR_RETURN(Table table, Table::Read(path,
-                                                    {{"ball"},
-                                                     {"x", Cells::kNumber, kLength},
-                                                     {"y", Cells::kNumber, kLength},
-                                                     {"z", Cells::kNumber, kLength},
-                                                     {"u", Cells::kNumberOrNothing, kLength, false}},
-                                                    units));
+std::vector<TableColumn> ArtifactColumns() {
+  std::vector<TableColumn> columns = {{"ball"}};
+  Append(Centre(true), &columns);
+  columns.push_back({"u", Cells::kNumberOrNothing, Dimension::kLength, false});
+  return columns;
+}
+
+Result<Artifact> ReadArtifact(const TableDeclaration& declared) {
+  SCANCAL_ASSIGN_OR_RETURN(Table table, Table::Read(declared.format, ArtifactColumns()));
   Artifact artifact;
   std::unordered_map<std::string, size_t> rows;
   for (size_t row = 0; row < table.rows(); ++row) {
@@ -210,7 +122,7 @@ Result<Artifact> ReadArtifact(const std::filesystem::path& path, const Units& un
                          "found " + Quoted(name) +
                              " again, expected a name that no other ball has (it stands also at " +
                              table.Place(first->second) + ")");
-    const Eigen::Vector3d centre(table.Number("x", row), table.Number("y", row), table.Number("z", row));
+    const Eigen::Vector3d centre = CentreAt(table, row);
     for (const Model::Sphere& other : artifact.spheres)
       if (centre == other.centre)
         return table.Wrong(row, "x", "ball " + Quoted(name) + " lies where " + Quoted(other.name) + " does");
@@ -222,21 +134,45 @@ Result<Artifact> ReadArtifact(const std::filesystem::path& path, const Units& un
   return artifact;
 }
 
-Result<Poses> ReadPoses(const std::filesystem::path& path, const std::vector<Link>& links, const Units& units,
-                        bool with_stations) {
-  SCANCAL_ASSIGN_OR_RETURN(Table table, Table::Read(path, PoseColumns(links.size(), with_stations), units));
-  if (!links.empty()) SCANCAL_RETURN_IF_ERROR(CheckJoints(table, links.size()));
+std::vector<TableColumn> PoseColumns(size_t joints, bool with_stations) {
+  std::vector<TableColumn> columns = {{"pose", Cells::kText, Dimension::kNone, false}};
+  if (with_stations) columns.push_back({"station"});
+  if (joints == 0) {
+    Append(Centre(true, "; joint angles need robot: links in dataset.yaml"), &columns);
+    return columns;
+  }
+  Append(JointColumns(joints, fmt::format("; robot: links declares {} joints, without it the poses are those of the "
+                                          "flange",
+                                          joints)),
+         &columns);
+  return columns;
+}
+
+Result<Poses> ReadPoses(const TableDeclaration& declared, const std::vector<Link>& links,
+                        const std::vector<Coupling>& couplings, bool with_stations) {
+  std::vector<TableColumn> columns = PoseColumns(links.size(), with_stations);
+  if (links.empty())
+    Append(declared.orientation.Columns(
+               true, "; joint angles need robot: links in dataset.yaml; how turns are written is declared as " +
+                         OrientationRemedy()),
+           &columns);
+  SCANCAL_ASSIGN_OR_RETURN(Table table, Table::Read(declared.format, columns));
+  std::vector<Eigen::Isometry3d> flanges;
+  if (!links.empty()) {
+    SCANCAL_RETURN_IF_ERROR(CheckJoints(table, links.size()));
+  } else {
+    SCANCAL_ASSIGN_OR_RETURN(flanges, FramesOf(table, declared.orientation));
+  }
   Poses poses;
+  const std::vector<std::string> names = PoseNames(table);
   std::unordered_map<std::string, size_t> stations;
   for (size_t row = 0; row < table.rows(); ++row) {
-    const std::string& name = table.Text("pose", row);
+    const std::string& name = names[row];
     Model::View view;
     view.name = name;
-    view.joints = JointsOf(table, row, links.size());
+    view.joints = JointsOf(table, row, links.size(), couplings);
     view.number = static_cast<int>(row);
-    if (links.empty()) {
-      SCANCAL_ASSIGN_OR_RETURN(view.base_from_flange, FlangeOf(table, row));
-    }
+    if (links.empty()) view.base_from_flange = flanges[row];
     const std::string of_station = with_stations ? table.Text("station", row) : "world";
     const size_t station = stations.try_emplace(of_station, stations.size()).first->second;
     if (station == poses.stations.size()) poses.stations.push_back({of_station, {}});
@@ -254,23 +190,30 @@ Result<Poses> ReadPoses(const std::filesystem::path& path, const std::vector<Lin
   return poses;
 }
 
-Result<Observations> ReadObservations(const std::filesystem::path& path, const std::filesystem::path& folder,
-                                      const Units& units, double ball_diameter) {
+std::vector<TableColumn> ObservationColumns() {
+  std::vector<TableColumn> columns = {{"pose"}, {"ball"}};
+  Append(Centre(false), &columns);
+  columns.push_back({"u", Cells::kNumberOrNothing, Dimension::kLength, false});
+  columns.push_back({"file", Cells::kText, Dimension::kNone, false});
+  return columns;
+}
+
+Result<Observations> ReadObservations(const TableDeclaration& declared, const std::filesystem::path& folder,
+                                      double ball_diameter) {
   Observations result;
-  SCANCAL_ASSIGN_OR_RETURN(result.table, ReadBallTable(path, units));
+  SCANCAL_ASSIGN_OR_RETURN(result.table, ReadBallTable(declared.format));
   const Table& table = result.table;
+  result.poses = PoseNames(table);
   result.fitted = table.Has("file");
   result.seen.reserve(table.rows());
   for (size_t row = 0; row < table.rows(); ++row) {
     SeenCentre& seen = result.seen.emplace_back();
     if (result.fitted) continue;
-    seen.centre << table.Number("x", row), table.Number("y", row), table.Number("z", row);
-    if (!table.Has("u")) continue;
-    const double u = table.Number("u", row);
-    if (u <= 0) return table.Wrong(row, "u", "expected a standard uncertainty above 0, or nothing");
-    if (u > 0) seen.covariance = u * u * Eigen::Matrix3d::Identity();  // not of nan
+    seen.centre = CentreAt(table, row);
+    SCANCAL_ASSIGN_OR_RETURN(const double u, NoiseAt(table, row));
+    seen.covariance = u * u * Eigen::Matrix3d::Identity();
   }
-  if (result.fitted) SCANCAL_RETURN_IF_ERROR(FitBalls(folder, units, ball_diameter, &result));
+  if (result.fitted) SCANCAL_RETURN_IF_ERROR(FitBalls(folder, declared.format, ball_diameter, &result));
   return result;
 }
 
@@ -281,42 +224,47 @@ std::vector<Model::Sphere> SpheresOfTarget() {
           {"y", kArm_mm * Eigen::Vector3d::UnitY()}};
 }
 
-Result<Observations> ReadTracked(const std::filesystem::path& path, const Units& units) {
-  using enum Dimension;
+bool IsTarget(const std::vector<Model::Sphere>& spheres) {
+  const std::vector<Model::Sphere> target = SpheresOfTarget();
+  return std::equal(spheres.begin(), spheres.end(), target.begin(), target.end(),
+                    [](const auto& a, const auto& b) { return a.name == b.name && a.centre == b.centre; });
+}
+
+std::vector<TableColumn> TrackedColumns() {
+  std::vector<TableColumn> columns = {{"pose", Cells::kText, Dimension::kNone, false},
+                                      {"point", Cells::kText, Dimension::kNone, false}};
+  Append(Centre(true), &columns);
+  columns.push_back({"u", Cells::kNumberOrNothing, Dimension::kLength, false});
+  return columns;
+}
+
+Result<Observations> ReadTracked(const TableDeclaration& declared) {
   Observations result;
   result.ball_column = "point";
-  std::vector<TableColumn> columns = {{"pose"},
-                                      {"point", Cells::kText, kNone, false},
-                                      {"x", Cells::kNumber, kLength},
-                                      {"y", Cells::kNumber, kLength},
-                                      {"z", Cells::kNumber, kLength},
-                                      {"u", Cells::kNumberOrNothing, kLength, false}};
-  for (const std::string& part : kQuaternion) columns.push_back({part, Cells::kNumber, kNone, false});
-  SCANCAL_ASSIGN_OR_RETURN(result.table, Table::Read(path, columns, units));
+  std::vector<TableColumn> columns = TrackedColumns();
+  Append(declared.orientation.Columns(declared.names_orientation, ""), &columns);
+  SCANCAL_ASSIGN_OR_RETURN(result.table, Table::Read(declared.format, columns));
   const Table& table = result.table;
-  const bool turns =
-      std::all_of(kQuaternion.begin(), kQuaternion.end(), [&](const std::string& part) { return table.Has(part); });
+  const bool turns = declared.orientation.IsIn(table);
   if (turns == table.Has("point"))
     return Error{table.name() +
-                 ": expected the columns point, x, y, z of reflectors, or x, y, z, qx, qy, qz, qw of a "
-                 "6-DoF target, " +
-                 (turns ? "not both" : "found neither")};
-  for (size_t row = 0; row < table.rows(); ++row) {
-    if (turns) {
-      SCANCAL_ASSIGN_OR_RETURN(const Eigen::Isometry3d target, FlangeOf(table, row));
+                 ": expected the column point of reflectors, or those of the turn of a 6-DoF target, qx, qy, qz, qw or "
+                 "as " +
+                 OrientationRemedy() + ": " + (turns ? "not both" : "found neither")};
+  result.poses = PoseNames(table);
+  if (turns) {
+    SCANCAL_ASSIGN_OR_RETURN(const auto targets, FramesOf(table, declared.orientation));
+    for (size_t row = 0; row < table.rows(); ++row)
       for (const Model::Sphere& sphere : SpheresOfTarget()) {
-        result.seen.push_back({target * sphere.centre, Eigen::Matrix3d::Zero()});
+        result.seen.push_back({targets[row] * sphere.centre, Eigen::Matrix3d::Zero()});
         result.rows.push_back(row);
         result.balls.push_back(sphere.name);
       }
-      continue;
-    }
-    SeenCentre& seen = result.seen.emplace_back();
-    seen.centre << table.Number("x", row), table.Number("y", row), table.Number("z", row);
-    if (!table.Has("u")) continue;
-    const double u = table.Number("u", row);
-    if (u <= 0) return table.Wrong(row, "u", "expected a standard uncertainty above 0, or nothing");
-    if (u > 0) seen.covariance = u * u * Eigen::Matrix3d::Identity();  // not of nan
+    return result;
+  }
+  for (size_t row = 0; row < table.rows(); ++row) {
+    SCANCAL_ASSIGN_OR_RETURN(const double u, NoiseAt(table, row));
+    result.seen.push_back({CentreAt(table, row), u * u * Eigen::Matrix3d::Identity()});
   }
   return result;
 }
@@ -383,6 +331,16 @@ Result<void> AttachBalls(const Observations& observations, const std::vector<std
                          const std::string& where, double declared_noise, Poses* poses) {
   std::unordered_map<std::string, int> indices;
   for (const std::string& ball : balls) indices.try_emplace(ball, static_cast<int>(indices.size()));
+  if (const Table& table = observations.table; !table.Has("pose")) {
+    if (poses->table.Has("pose"))
+      return Error{table.name() + ": found no column 'pose', expected one with the names that " + poses->table.name() +
+                   " has"};
+    if (table.rows() != poses->table.rows())
+      return Error{
+          fmt::format("{}: found {} lines, but {} in {}: expected one for each of its poses, or a column "
+                      "'pose' in both",
+                      table.name(), table.rows(), poses->table.rows(), poses->table.name())};
+  }
   const double unit = observations.fitted ? MedianSize(observations) : UsualNoise(observations, declared_noise);
   for (size_t row = 0; row < observations.seen.size(); ++row) {
     const std::string &pose_name = observations.Pose(row), &ball_name = observations.Ball(row);

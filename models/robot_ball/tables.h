@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 #include "io/table.h"
+#include "models/chain/declare.h"
 #include "models/robot_ball.h"
 #include "solver/sentence.h"
 
@@ -17,7 +18,8 @@ struct Artifact {
 };
 
 // Columns ball, x, y, z[, u], in the artifact's own frame. Two balls of one name or in one place are refused.
-Result<Artifact> ReadArtifact(const std::filesystem::path& path, const Units& units);
+std::vector<TableColumn> ArtifactColumns();
+Result<Artifact> ReadArtifact(const TableDeclaration& declared);
 
 struct Poses {
   struct Place {  // of a pose
@@ -30,10 +32,12 @@ struct Poses {
 };
 
 // Columns station (of the only one, "world", where with_stations is not set), pose and q1 .. qn, one a link; without
-// links x, y, z, qx, qy, qz, qw: the flange in the base. Joint angles beyond two turns, or all of some degrees only,
-// are of the other unit and refused, as are quaternions that are not normalised and a pose that is named twice.
-Result<Poses> ReadPoses(const std::filesystem::path& path, const std::vector<Link>& links, const Units& units,
-                        bool with_stations = true);
+// links x, y, z and those of a turn (Orientation): the flange in the base. Poses without names are numbered by their
+// lines, from 1. Joint angles beyond two turns, or all of some degrees only, are of the other unit and refused, as is a
+// pose that is named twice.
+std::vector<TableColumn> PoseColumns(size_t joints, bool with_stations);
+Result<Poses> ReadPoses(const TableDeclaration& declared, const std::vector<Link>& links,
+                        const std::vector<Coupling>& couplings, bool with_stations = true);
 
 struct SeenCentre {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();      // in the scanner's frame, mm
@@ -49,8 +53,9 @@ struct Observations {
   std::string ball_column = "ball";
   std::vector<size_t> rows;        // of the table, one for each of `seen`; empty: they are one a row
   std::vector<std::string> balls;  // their names; empty: as the table says
+  std::vector<std::string> poses;  // of each row
   size_t Row(size_t seen_one) const { return rows.empty() ? seen_one : rows[seen_one]; }
-  const std::string& Pose(size_t seen_one) const { return table.Text("pose", Row(seen_one)); }
+  const std::string& Pose(size_t seen_one) const { return poses[Row(seen_one)]; }
   const std::string& Ball(size_t seen_one) const {
     return balls.empty() ? table.Text(ball_column, seen_one) : balls[seen_one];
   }
@@ -58,8 +63,14 @@ struct Observations {
 
 // Columns pose, ball and x, y, z[, u], or file: points on that ball (columns x, y, z; its path from `folder`), through
 // which a sphere is laid, of radius ball_diameter / 2 or, if that is 0, a free one. lengths in the declared unit.
-Result<Observations> ReadObservations(const std::filesystem::path& path, const std::filesystem::path& folder,
-                                      const Units& units, double ball_diameter);
+std::vector<TableColumn> ObservationColumns();
+Result<Observations> ReadObservations(const TableDeclaration& declared, const std::filesystem::path& folder,
+                                      double ball_diameter);
+
+// Reads the file of every row and sets centre and covariance. Refused: a sphere that the points do not determine, a
+// declared diameter that they contradict, points of one laser line (a circle, which leaves the centre two-fold).
+Result<void> FitBalls(const std::filesystem::path& folder, const ScanFormat& declared, double ball_diameter,
+                      Observations* observations);
 
 // What SeenBall::spread is relative to, mm: what was declared (0: nothing) or else the median of what is known of the
 // centres themselves; 0 if neither.
@@ -76,10 +87,13 @@ Result<void> AttachBalls(const Observations& observations, const std::vector<std
 // that have no other.
 std::vector<Station> TakeSeenStations(Poses* poses, std::vector<Sentence>* warnings);
 
-// What a tracker saw of points on the tool: columns pose, point, x, y, z[, u], or pose and x, y, z, qx, qy, qz, qw of a
-// 6-DoF target, in its own frame; in place of the latter stand three points of the target, SpheresOfTarget.
-Result<Observations> ReadTracked(const std::filesystem::path& path, const Units& units);
+// What a tracker saw of points on the tool: columns pose, point, x, y, z[, u], or x, y, z and those of a turn
+// (Orientation) of a 6-DoF target, in its own frame; in place of the latter stand three points of the target,
+// SpheresOfTarget. Without a column pose each line is of the pose in the same line of its table.
+std::vector<TableColumn> TrackedColumns();
+Result<Observations> ReadTracked(const TableDeclaration& declared);
 std::vector<Model::Sphere> SpheresOfTarget();  // its origin, and 100 mm along its x and its y
+bool IsTarget(const std::vector<Model::Sphere>& spheres);
 
 // Points of a tool that nobody measured, in a frame of their own: the shape that all poses saw on average (generalised
 // Procrustes analysis: Gower 1975), and the standard uncertainty of a coordinate of it. The frame: the first point at
@@ -92,7 +106,7 @@ struct Shape {
 Result<Shape> ShapeOf(const std::vector<Station>& stations, const std::vector<std::string>& names);
 
 struct CheckFiles {
-  std::filesystem::path poses, observations, distances;
+  TableDeclaration poses, observations, distances;
 };
 
 struct CheckLengths {
@@ -107,7 +121,9 @@ struct CheckLengths {
 // if it alone saw both, which is warned of. Balls of a check need not be those of the artifact: SeenBall::sphere counts
 // the names of this table and means nothing outside. Refused: a pair that no station saw; lengths that are off by half
 // and more, in the scanner's own frame: another unit, or other balls.
-Result<CheckLengths> ReadCheck(const CheckFiles& paths, const std::filesystem::path& folder,
-                               const std::vector<Link>& links, const Units& units, double ball_diameter);
+std::vector<TableColumn> DistanceColumns();
+Result<CheckLengths> ReadCheck(const CheckFiles& files, const std::filesystem::path& folder,
+                               const std::vector<Link>& links, const std::vector<Coupling>& couplings,
+                               double ball_diameter);
 
 }  // namespace scancal::robot_ball

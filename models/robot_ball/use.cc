@@ -88,6 +88,7 @@ Declaration Parsed(const Json& json) {
   result.u_of_spheres = json.at("u_of_spheres").get<std::vector<double>>();
   if (result.u_of_spheres.size() != data.spheres.size()) throw std::out_of_range("u_of_spheres");
   result.centres_have_u = json.at("centres_have_u");
+  result.echo = json.value("echo", "");
   for (const Json& each : json.at("warnings")) result.warnings.push_back(SentenceFromJson(each).value());
   data.stations = StationsOf(json.at("stations"), data.links.size(), data.spheres.size());
   data.held_out = StationsOf(json.value("held_out", Json::array()), data.links.size(), data.spheres.size());
@@ -123,6 +124,7 @@ Json ToJson(const Declaration& declaration) {
                {"usual_ball_noise", data.usual_ball_noise},
                {"u_of_spheres", declaration.u_of_spheres},
                {"centres_have_u", declaration.centres_have_u},
+               {"echo", declaration.echo},
                {"warnings", Json::array()},
                {"spheres", Json::array()},
                {"stations", Json::array()},
@@ -150,12 +152,14 @@ Result<Declaration> FromJson(const Json& data, const std::string& file) {
 }
 
 Result<Json> Scanner::Data() const {
-  return Json{{"dataset", declaration_.dataset.text}, {"robot", ToJson(declaration_)}};
+  Json data = {{"dataset", declaration_.dataset.text}, {"robot", ToJson(declaration_)}};
+  KeepUrdf(declaration_.arm, &data);
+  return data;
 }
 
 Result<std::unique_ptr<scancal::Scanner>> Reload(const Dataset& dataset, const Json& data, const std::string& file) {
   SCANCAL_ASSIGN_OR_RETURN(Declaration read, FromJson(data.value("robot", Json()), file));
-  SCANCAL_ASSIGN_OR_RETURN(Declaration declaration, Redeclare(dataset, std::move(read)));
+  SCANCAL_ASSIGN_OR_RETURN(Declaration declaration, Redeclare(WithUrdf(dataset, data), std::move(read)));
   SCANCAL_ASSIGN_OR_RETURN(Model model, DeclareModel(declaration));
   return std::unique_ptr<scancal::Scanner>(std::make_unique<Scanner>(std::move(declaration), std::move(model)));
 }

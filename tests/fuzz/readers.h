@@ -11,6 +11,7 @@
 #include "io/json_file.h"
 #include "io/scan.h"
 #include "io/table.h"
+#include "io/urdf.h"
 
 namespace scancal {
 
@@ -127,6 +128,11 @@ inline void ReadAsDeclaration(std::string_view bytes) {
   (void)dataset->yaml.Finish();
 }
 
+inline void ReadAsRobot(std::string_view bytes) {
+  const auto joints = ReadUrdf(bytes, "arm.urdf", "", "tool0");
+  if (joints.ok() && joints->empty()) std::abort();
+}
+
 inline void ReadAsResult(std::string_view bytes) {
   const FileOf file(bytes);
   (void)ReadJson(file.path());
@@ -137,16 +143,11 @@ struct FuzzedReader {
   const char* name;
   void (*read)(std::string_view bytes);
 };
-inline constexpr FuzzedReader kFuzzedReaders[] = {{"scan", &ReadAsScan},
-                                                  {"table", &ReadAsTable},
-                                                  {"array", &ReadAsArray},
-                                                  {"declaration", &ReadAsDeclaration},
-                                                  {"result", &ReadAsResult},
-                                                  {"gocator", &ReadAsGocator},
-                                                  {"ljv", &ReadAsLjV},
-                                                  {"ljx", &ReadAsLjX},
-                                                  {"image", &ReadAsHeightImage},
-                                                  {"ply", &ReadAsPly},
-                                                  {"pcd", &ReadAsPcd}};
+inline constexpr FuzzedReader kFuzzedReaders[] = {{"scan", &ReadAsScan},       {"table", &ReadAsTable},
+                                                  {"array", &ReadAsArray},     {"declaration", &ReadAsDeclaration},
+                                                  {"robot", &ReadAsRobot},     {"result", &ReadAsResult},
+                                                  {"gocator", &ReadAsGocator}, {"ljv", &ReadAsLjV},
+                                                  {"ljx", &ReadAsLjX},         {"image", &ReadAsHeightImage},
+                                                  {"ply", &ReadAsPly},         {"pcd", &ReadAsPcd}};
 
 }  // namespace scancal

@@ -37,7 +37,7 @@ TEST_F(TableTest, AFileWithoutAHeader) {
   const auto table = read("# logged\n1,2\n3,4\n", {"other", "x_m"});
   ASSERT_TRUE(table.ok()) << table.error().message;
   EXPECT_THAT(table->Numbers("x"), ElementsAre(2000, 4000));
-  EXPECT_THAT(table->Wrong(0, "x", "so").message, EndsWith("t.csv:2:3: x: so"));
+  EXPECT_THAT(table->Wrong(0, "x", "so").message, EndsWith("t.csv:2:3: x_m: so"));
   EXPECT_THAT(read("1,2\n", {"a", "b"}).error().message, HasSubstr("t.csv: found the columns a, b, expected also 'x'"));
   EXPECT_THAT(read("", {"x"}).error().message, EndsWith("t.csv: found no line, expected lines of data"));
 }
@@ -53,6 +53,39 @@ TEST_F(TableTest, NamedColumnsInAnyOrder) {
   EXPECT_TRUE(table->Has("x"));
   EXPECT_FALSE(table->Has("q1"));
   EXPECT_FALSE(table->Has("other"));
+}
+
+// As a data set declares it, through the same code as a scan's.
+TEST_F(TableTest, ADialectOtherNamesAndSomeRows) {
+  ScanFormat format;
+  format.path = folder_.Write("t.csv", "Log;of\n\nRobot;Kugel;Wert [m]\nR1;A;1,5\nR2;B;2,5\nR1;C;x\n");
+  format.names = {{"ball", "Kugel"}, {"x", "Wert"}};
+  format.text.where = {{"Robot", "R2"}};
+  const std::vector<TableColumn> columns = {{"ball"}, {"x", Cells::kNumber, Dimension::kLength}};
+  auto table = Table::Read(format, columns);
+  ASSERT_TRUE(table.ok()) << table.error().message;
+  EXPECT_THAT(table->Texts("ball"), ElementsAre("B"));
+  EXPECT_THAT(table->Numbers("x"), ElementsAre(2500));
+  EXPECT_EQ(table->dialect(), "cells between semicolons, decimal commas, names in line 3");
+  EXPECT_THAT(table->Wrong(0, "x", "so").message, EndsWith("t.csv:5:6: Wert [m]: so"));  // as the file calls it
+  format.text.where = {{"Robot", "R1"}};
+  EXPECT_THAT(Table::Read(format, columns).error().message, HasSubstr("t.csv:6:6: Wert [m]: found \"x\""));
+  format.text.where = {{"Robot", "R3"}};
+  EXPECT_THAT(Table::Read(format, columns).error().message, HasSubstr("with what `where` asks for"));
+  format.text.where = {{"Arm", "R3"}};
+  EXPECT_THAT(Table::Read(format, columns).error().message, HasSubstr("t.csv:3: where: found the columns"));
+}
+
+TEST_F(TableTest, ANameThatIsDeclaredMustBeThereAndOnce) {
+  ScanFormat format;
+  format.path = folder_.Write("t.csv", "ball,x\nA,1\n");
+  const std::vector<TableColumn> columns = {
+      {"ball"}, {"x", Cells::kNumber, Dimension::kLength}, {"u", Cells::kNumberOrNothing, Dimension::kLength, false}};
+  EXPECT_TRUE(Table::Read(format, columns).ok());
+  format.names = {{"u", "sigma"}};
+  EXPECT_THAT(Table::Read(format, columns).error().message, HasSubstr("expected also 'sigma'"));
+  format.names = {{"u", "x"}};
+  EXPECT_THAT(Table::Read(format, columns).error().message, HasSubstr("'x' is declared to be both x, u"));
 }
 
 TEST_F(TableTest, AUnitInTheNameWins) {
@@ -87,7 +120,7 @@ TEST_F(TableTest, AQuoteBehindABlankHoldsCommas) {
   ASSERT_TRUE(table.ok()) << table.error().message;
   EXPECT_THAT(table->Texts("ball"), ElementsAre("A, 1", "B"));
   EXPECT_THAT(table->Wrong(0, "x", "w").message, EndsWith("t.csv:2:17: x: w"));
-  EXPECT_THAT(Error("ball,x_m\nA,y\n"), EndsWith("t.csv:2:3: x: found \"y\", expected a number"));
+  EXPECT_THAT(Error("ball,x_m\nA,y\n"), EndsWith("t.csv:2:3: x_m: found \"y\", expected a number"));
 }
 
 TEST_F(TableTest, PlacesCountCharacters) {

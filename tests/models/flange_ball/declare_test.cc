@@ -38,11 +38,16 @@ class FlangeBallDeclarationTest : public ::testing::Test {
     return declaration.ok() ? "" : declaration.error().message;
   }
   std::string ErrorOfTable(const std::string& contents, const std::vector<std::string>& columns = {"q1", "q2"}) {
-    auto declaration = *Declare();
-    declaration.columns = columns;
     const auto table = folder_.Write("table.csv", contents);
-    const auto tool = ReadTool({"tool", {table, table}}, declaration);
+    const auto tool = ReadTool(Tool({table, table}, columns), *Declare());
     return tool.ok() ? "" : tool.error().message;
+  }
+
+  static ToolDeclaration Tool(const std::array<std::filesystem::path, 2>& sockets,
+                              const std::vector<std::string>& columns) {
+    ToolDeclaration tool{"tool", sockets};
+    tool.format.npy_columns = columns;
+    return tool;
   }
 
   TemporaryFolder folder_;
@@ -83,17 +88,39 @@ TEST_F(FlangeBallDeclarationTest, FilesWithAHeaderAndWithout) {
   auto declaration = Declare();
   ASSERT_TRUE(declaration.ok()) << declaration.error().message;
   const auto a = folder_.path() / "a.csv", b = folder_.path() / "b.csv";
-  auto tool = ReadTool({"tool", {a, a}}, *declaration);
+  auto tool = ReadTool(declaration->targets[0], *declaration);
+  EXPECT_FALSE(tool.ok());  // b has a header
+  tool = ReadTool(Tool({a, a}, {"q1", "q2", "force"}), *declaration);
   ASSERT_TRUE(tool.ok()) << tool.error().message;
   ASSERT_EQ(tool->views.size(), 4U);
   EXPECT_THAT(tool->views[1].joints, ElementsAre(30 * kDegree, -40 * kDegree));
   EXPECT_EQ(tool->views[1].socket, 0);
   EXPECT_EQ(tool->views[2].socket, 1);
-  declaration->columns.clear();
-  tool = ReadTool({"tool", {b, b}}, *declaration);
+  tool = ReadTool(Tool({b, b}, {}), *declaration);
   ASSERT_TRUE(tool.ok()) << tool.error().message;
   EXPECT_THAT(tool->views[2].joints, ElementsAre(3, 10 * kDegree));
-  EXPECT_THAT(ReadTool({"tool", {b, a}}, *declaration).error().message, HasSubstr("declare columns: [q1, q2"));
+  EXPECT_THAT(ReadTool(Tool({b, a}, {}), *declaration).error().message, HasSubstr("declare columns: [q1, q2"));
+}
+
+// As a controller writes them: other names, a column that tells the rows of this robot, joints in rad, J2 coupled.
+TEST_F(FlangeBallDeclarationTest, TablesAsTheyAreWritten) {
+  folder_.Write("a.csv", "exported\nRobot;A1;A2\nR1;0,5;0,25\nR2;7;7\nR1;-1;1\n");
+  folder_.Write("b.csv", "exported\nRobot;A1;A2\nR1;0,1;0,2\nR1;0,3;0,4\n");
+  const auto declaration =
+      Declare("columns: [q1, q2, force]\ntargets: [{name: near, ",
+              "columns: {q1: A1, q2: A2}\nwhere: {Robot: R1}\ntargets: [{name: near, units: {angle: rad}, ");
+  ASSERT_TRUE(declaration.ok()) << declaration.error().message;
+  const auto tool = ReadTool(declaration->targets[0], *declaration);
+  ASSERT_TRUE(tool.ok()) << tool.error().message;
+  ASSERT_EQ(tool->views.size(), 4U);
+  EXPECT_THAT(tool->views[1].joints, ElementsAre(-1, 1));
+  const auto coupled = Declare("robot: {", "robot: {coupled: {q2: q2 - q1}, ");
+  ASSERT_TRUE(coupled.ok()) << coupled.error().message;
+  ToolDeclaration renamed = Tool({folder_.path() / "a.csv", folder_.path() / "a.csv"}, {});
+  renamed.format.names = {{"q1", "A1"}, {"q2", "A2"}};
+  const auto turned = ReadTool(renamed, *coupled);
+  ASSERT_TRUE(turned.ok()) << turned.error().message;
+  EXPECT_THAT(turned->views[1].joints, ElementsAre(7 * kDegree, 0));
 }
 
 TEST_F(FlangeBallDeclarationTest, WrongDeclarationsAreTold) {
@@ -112,6 +139,9 @@ TEST_F(FlangeBallDeclarationTest, WrongDeclarationsAreTold) {
               HasSubstr("no other location"));
   EXPECT_THAT(ErrorOf("targets: [{name: near, sockets: [a.csv, b.csv]}]", "targets: []"), HasSubstr("targets"));
   EXPECT_THAT(ErrorOf("columns", "colums"), HasSubstr("did you mean 'columns'?"));
+  EXPECT_THAT(ErrorOf("columns: [q1, q2, force]", "columns: {q3: A3, q4: A4}"),
+              HasSubstr("columns: q4: no column has this name here"));
+  EXPECT_THAT(ErrorOf("robot: {", "robot: {coupled: {q2: q1}, "), HasSubstr("{q3: q3 + q2}"));
   EXPECT_THAT(ErrorOf("alpha: 90", "alpha: x"), HasSubstr("expected a number"));
   EXPECT_THAT(ErrorOf("parameters:", "influences: {seat: 0}\nparameters:"), HasSubstr("every pose has noise"));
   EXPECT_THAT(ErrorOf("parameters:", "influences: {seats: 1}\nparameters:"), HasSubstr("did you mean 'seat'?"));

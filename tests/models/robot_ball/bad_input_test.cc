@@ -92,7 +92,8 @@ TEST_F(RobotBadInputTest, DegreesAsRadians) {
   top_ = "scancal: 1\nmodel: robot-ball\nunits: {length: mm, angle: deg}\n";
   Replace("q3", "q3_rad", &poses_[0]);
   EXPECT_THAT(Error(),
-              AllOf(HasSubstr("poses.csv:2:16: q3: that is 95 rad, expected two turns at most"), HasSubstr("q3_deg")));
+              AllOf(HasSubstr("poses.csv:2:16: q3_rad: that is 95 rad in pose \"P1\", expected two turns at most"),
+                    HasSubstr("q3_deg")));
 }
 
 TEST_F(RobotBadInputTest, RadiansAsDegrees) {

@@ -1,9 +1,12 @@
 // What a robot's data set may say, and what comes of it.
+#include "models/chain/urdf.h"
+#include "models/robot_ball/scanner.h"
 #include "tests/models/robot_ball/files.h"
 
 namespace scancal::robot_ball {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -68,6 +71,144 @@ TEST_F(RobotDeclarationTest, UnitsApplyToEveryNumberUnlessAColumnSaysOtherwise) 
   const Declaration declaration = Declared();
   EXPECT_NEAR(declaration.data.ball_diameter, 12.7, 1e-12);
   ExpectExact(declaration, HandEye(), BaseFromArtifact);
+}
+
+// As a controller and a scanner write them: other names, semicolons and decimal commas, rows of another robot, m, rad.
+TEST_F(RobotDeclarationTest, TablesInAnyDialectWithNamesAndUnitsOfTheirOwn) {
+  const auto rewrite = [](const std::string& head, std::vector<std::string>* lines) {
+    for (std::string& line : *lines)
+      for (char& c : line) c = c == ',' ? ';' : c == '.' ? ',' : c;
+    (*lines)[0] = head;
+  };
+  for (size_t p = 0; p < kJoints.size(); ++p) {
+    std::vector<double> joints = kJoints[p];
+    for (double& q : joints) q *= kDegree;
+    joints[2] -= joints[1];  // counted from the horizontal
+    poses_[p + 1] = (p < 3 ? "left,P" : "right,P") + std::to_string(p + 1) + "," + Numbers(joints);
+    for (size_t k = 0; k < kCentres.size(); ++k)
+      balls_[1 + p * kCentres.size() + k] = Row("P" + std::to_string(p + 1), k, Seen(p, k) / 1000) + ",3";
+  }
+  rewrite("Ort;Pose;A1;A2;A3;A4;A5;A6", &poses_);
+  rewrite("Pose;Ball;X;Y;Z;Scanner", &balls_);
+  rewrite("", &artifact_);
+  balls_.push_back("P1;A;1;2;3;4");
+  poses_.insert(poses_.begin(), "KRC4;exported");
+  robot_ += "  coupled: {q3: q3 + q2}\n";
+  rest_ =
+      "poses: {file: poses.csv, columns: {station: Ort, q1: A1, q2: A2, q3: A3, q4: A4, q5: A5, q6: A6}, "
+      "units: {angle: rad}}\n"
+      "observations: {file: balls.csv, where: {Scanner: 3}, units: {length: m}}\n"
+      "artifact: {file: artifact.csv, columns: [ball, x, y, z], text: {separator: \";\", decimal: \",\"}}\n";
+  const Declaration declaration = Declared();
+  ExpectExact(declaration, HandEye(), BaseFromArtifact);
+  EXPECT_EQ(Said(declaration.arm.couplings), " Joint 3 turns by q3 + q2.");
+  EXPECT_THAT(declaration.echo,
+              AllOf(HasSubstr("poses.csv: cells between"), HasSubstr("decimal commas, names in line 2")));
+}
+
+// `columns:` and `text:` at the top are for all tables.
+TEST_F(RobotDeclarationTest, NamesForAllTables) {
+  balls_[0] = "Punkt,Kugel,x,y,z";
+  poses_[0] = "station,Punkt,q1,q2,q3,q4,q5,q6";
+  artifact_[0] = "Kugel,x,y,z";
+  more_ = "columns: {pose: Punkt, ball: Kugel}\ntext: {separator: \",\"}\n";
+  ExpectExact(Declared(), HandEye(), BaseFromArtifact);
+  more_ = "columns: {pose: Punkt, boll: Kugel}\n";
+  EXPECT_THAT(Error(), HasSubstr("columns: boll: no column has this name"));
+  more_ = "columns: [pose, ball]\n";
+  EXPECT_THAT(Error(), HasSubstr("names in the order of a file belong to one table: poses: {file:"));
+  more_ = "invalid: -1\n";
+  EXPECT_THAT(Error(), HasSubstr("unknown key 'invalid'"));
+}
+
+// Poses without names are those of their lines.
+TEST_F(RobotDeclarationTest, PosesWithoutNames) {
+  for (std::string& line : poses_) line.erase(line.find(','), line.find(',', line.find(',') + 1) - line.find(','));
+  for (std::string& line : balls_) line.erase(0, line[0] == 'P' ? 1 : 0);
+  ExpectExact(Declared(), HandEye(), BaseFromArtifact);
+}
+
+// Poses of the flange as a KUKA shows them, in m and rad.
+TEST_F(RobotDeclarationTest, TurnsAsTheyAreWritten) {
+  UseFlangePoses();
+  poses_[0] = "station,pose,X,Y,Z,A,B,C";
+  for (size_t p = 0; p < kJoints.size(); ++p) {
+    const Eigen::Isometry3d flange = Flange(p);
+    const Eigen::Vector3d t = flange.translation() / 1000, abc = flange.linear().eulerAngles(2, 1, 0);
+    poses_[p + 1] = (p < 3 ? "left,P" : "right,P") + std::to_string(p + 1) + "," +
+                    Numbers({t[0], t[1], t[2], abc[0], abc[1], abc[2]});
+  }
+  EXPECT_THAT(Error(), AllOf(HasSubstr("expected also 'qx'"), HasSubstr("KUKA ABC"), HasSubstr("XYZ extrinsic")));
+  rest_ =
+      "poses: {file: poses.csv, orientation: KUKA, units: {length: m, angle: rad}}\nobservations: balls.csv\n"
+      "artifact: artifact.csv\n";
+  const Declaration declaration = Declared();
+  ExpectExact(declaration, HandEye(), BaseFromArtifact);
+  EXPECT_THAT(declaration.echo, HasSubstr("turns as KUKA ABC"));
+  rest_.replace(rest_.find("KUKA"), 4, "ZYX");
+  EXPECT_THAT(Error(), AllOf(HasSubstr("dataset.yaml:4:39: poses: orientation: found \"ZYX\""),
+                             HasSubstr("ZYX intrinsic"), HasSubstr("ZYX extrinsic")));
+}
+
+// One table of a tracker's 6-DoF target, and of the joints: no names, each line a pose.
+TEST_F(RobotDeclarationTest, ATargetSeenByATrackerInTheSameTable) {
+  top_ = "scancal: 1\nmodel: robot-tracker\nunits: {length: mm, angle: deg}\n";
+  balls_ = {"A1;A2;A3;A4;A5;A6;m x;m y;m z;m rx;m ry;m rz"};
+  for (size_t p = 0; p < kJoints.size(); ++p) {
+    const Eigen::Isometry3d target = BaseFromArtifact(0).inverse() * Flange(p) * HandEye();
+    const Eigen::Vector3d t = target.translation(), r = target.linear().eulerAngles(0, 1, 2) / kDegree;
+    std::string line = Numbers(kJoints[p]) + "," + Numbers({t[0], t[1], t[2], r[0], r[1], r[2]});
+    for (char& c : line) c = c == ',' ? ';' : c == '.' ? ',' : c;
+    balls_.push_back(line);
+  }
+  rest_ =
+      "poses: {file: balls.csv, columns: {q1: A1, q2: A2, q3: A3, q4: A4, q5: A5, q6: A6}}\n"
+      "observations: {file: balls.csv, orientation: XYZ intrinsic,\n"
+      "  columns: {x: m x, y: m y, z: m z, rx: m rx, ry: m ry, rz: m rz}}\n";
+  const Declaration declaration = Declared();
+  ASSERT_EQ(declaration.data.stations.size(), 1U);
+  const std::vector<Model::View>& views = declaration.data.stations[0].views;
+  ASSERT_EQ(views.size(), 6U);
+  EXPECT_EQ(declaration.files.size(), 2U);
+  for (size_t p = 0; p < views.size(); ++p) {
+    EXPECT_EQ(views[p].name, std::to_string(p + 1));
+    for (const Model::SeenBall& ball : views[p].balls) {
+      const Eigen::Vector3d in_base = Flange(p) * HandEye() * declaration.data.spheres[ball.sphere].centre;
+      EXPECT_LT((BaseFromArtifact(0) * ball.centre - in_base).norm(), 1e-9);
+    }
+  }
+  poses_.resize(4);
+  poses_[0] = "station,nr,q1,q2,q3,q4,q5,q6";
+  rest_.replace(0, rest_.find('\n'), "poses: poses.csv");
+  EXPECT_THAT(Error(), AllOf(HasSubstr("balls.csv: found 6 lines, but 3 in"), HasSubstr("or a column 'pose' in both")));
+  poses_[0] = "station,pose,q1,q2,q3,q4,q5,q6";
+  EXPECT_THAT(Error(), HasSubstr("balls.csv: found no column 'pose', expected one with the names that"));
+  rest_ = "poses: poses.csv\nobservations: {file: balls.csv, columns: {x: m x, y: m y, z: m z}}\n";
+  EXPECT_THAT(Error(), AllOf(HasSubstr("the turn of a 6-DoF target"), HasSubstr("XYZ intrinsic")));
+}
+
+// The nominal links of a URDF, which the result keeps.
+TEST_F(RobotDeclarationTest, LinksOfAUrdf) {
+  folder_.Write("arm.urdf", UrdfOf("arm", {Links(), Eigen::Isometry3d::Identity(), {}}, {}, {}));
+  robot_ = "robot: {urdf: arm.urdf, tip: flange}\n";
+  const Declaration declaration = Declared();
+  ExpectExact(declaration, HandEye(), BaseFromArtifact);
+  EXPECT_EQ(declaration.arm.joints.size(), 6U);
+  EXPECT_THAT(declaration.files, ::testing::Contains(folder_.path() / "arm.urdf"));
+  const auto dataset = ReadDataset(folder_.path());
+  ASSERT_TRUE(dataset.ok());
+  const auto scanner = Load(*dataset);
+  ASSERT_TRUE(scanner.ok()) << scanner.error().message;
+  const auto data = (*scanner)->Data();
+  ASSERT_TRUE(data.ok());
+  std::filesystem::remove(folder_.path() / "arm.urdf");
+  const auto again = Reload(*dataset, *data, "calibration.json");
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_EQ((*again)->Describe(), (*scanner)->Describe());
+  EXPECT_EQ(*(*again)->Data(), *data);
+  EXPECT_THAT(Load(*dataset).error().message, HasSubstr("arm.urdf"));
+  robot_ = "robot: {urdf: arm.urdf, tip: flange, links: [{d: 1, a: 2, alpha: 3}]}\n";
+  EXPECT_THAT(Error(), HasSubstr("expected links or a urdf, not both"));
 }
 
 TEST_F(RobotDeclarationTest, TheOrderOfLinesDoesNotMatter) {
