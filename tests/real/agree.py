@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
 """Do twelve calibrations with 40 poses each, none of them in two, agree within their U?
 
-    agree.py PROGRAM FOLDER [INFLUENCES]    FOLDER: irb120-faro; INFLUENCES: "gravity: estimate"
+    agree.py PROGRAM DATASET FOLDER [INFLUENCES]    tests/real/irb120-faro and the folder irb120-faro, or
+                                                    tests/real/ur10-ipa and ipa-robot-accuracy; "gravity: estimate"
 
 Prints how many differences of two sets' parameters lie within sqrt(U_a^2 + U_b^2), with the 95 % interval of that share
 from the scatter of the sets (each set left out in turn), and how many results say that they are not reliable.
 Standard library only.
 """
-import csv
 import itertools
 import json
 import math
+import re
 import subprocess
 import sys
 import tempfile
@@ -19,24 +20,20 @@ from pathlib import Path
 SETS, POSES = 12, 40
 
 
-def rows(file: Path) -> list[list[str]]:
-    with open(file, newline="") as f:
-        return list(csv.reader(f))
+def parts(table: str, part: int) -> str:
+    """Its header and the lines of some poses, which the first column names, or each is the pose of its number."""
+    header, *lines = table.splitlines(keepends=True)
+    names = [line.partition(",")[0] if header.startswith("pose,") else k for k, line in enumerate(lines)]
+    kept = set(list(dict.fromkeys(names))[part::SETS][:POSES])
+    return header + "".join(line for name, line in zip(names, lines) if name in kept)
 
 
-def calibrate(program: str, folder: Path, part: int, influences: str) -> dict:
-    here = Path(__file__).parent
-    joints, points = rows(folder / "joints.csv"), rows(folder / "points.csv")
-    kept = joints[1:][part::SETS][:POSES]
-    names = {row[0] for row in kept}
+def calibrate(program: str, dataset: Path, folder: Path, part: int, influences: str) -> dict:
+    yaml = (dataset / "dataset.yaml").read_text().replace("check: {every: 2}\n", "")
     with tempfile.TemporaryDirectory() as scratch:
-        data = Path(scratch) / "irb120-faro"
-        data.mkdir()
-        for name, table in (("joints.csv", [joints[0]] + kept),
-                            ("points.csv", [points[0]] + [row for row in points[1:] if row[0] in names])):
-            with open(data / name, "w", newline="") as f:
-                csv.writer(f).writerows(table)
-        yaml = (here / "dataset.yaml").read_text().replace("check: {every: 2}\n", "")
+        for name in set(re.findall(r"[\w/.-]+\.csv", yaml)):
+            (Path(scratch) / name).parent.mkdir(parents=True, exist_ok=True)
+            (Path(scratch) / name).write_text(parts((folder.parent / name).read_text(), part))
         (Path(scratch) / "dataset.yaml").write_text(yaml + (f"influences: {{{influences}}}\n" if influences else ""))
         run = subprocess.run([program, "refine", scratch, f"--out={scratch}/out"], capture_output=True, text=True)
         if run.returncode == 1:
@@ -51,8 +48,8 @@ def share(sets: list[dict], names: list[str]) -> float:
 
 
 def main() -> None:
-    program, folder, influences = sys.argv[1], Path(sys.argv[2]), "".join(sys.argv[3:4])
-    results = [calibrate(program, folder, part, influences) for part in range(SETS)]
+    program, dataset, folder, influences = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3]), "".join(sys.argv[4:5])
+    results = [calibrate(program, dataset, folder, part, influences) for part in range(SETS)]
     sets = [{p["name"]: p for p in result["parameters"] if p["role"] == "estimate"} for result in results]
     names = sorted(set.intersection(*(set(each) for each in sets)))
     whole = share(sets, names)
