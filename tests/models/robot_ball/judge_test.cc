@@ -117,7 +117,7 @@ TEST(RobotVerdicts, UsualMistakesOfJointsAreNamed) {
   };
   for (const int sign : {-1, 1})
     EXPECT_THAT(refusal(with(3, [=](auto& view) { view.joints[2] += sign * view.joints[1]; })),
-                HasSubstr(sign > 0 ? "write q3 - q2" : "write q3 + q2"));
+                HasSubstr(sign > 0 ? "coupled: {q3: q3 - q2}" : "coupled: {q3: q3 + q2}"));
   for (size_t j = 1; j < 6; ++j)
     EXPECT_THAT(refusal(with(j, [=](auto& view) { view.joints[j] *= -1; })),
                 HasSubstr("q" + std::to_string(j + 1) + " turns the other way"));
