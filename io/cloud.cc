@@ -85,6 +85,7 @@ struct CloudHead {
   std::vector<CloudField> fields;
   bool ascii = true;
   int64_t points = 0;
+  bool goes_on = false;  // other elements follow the points
 };
 
 bool IsCount(const std::string& word, int64_t most, int64_t* number) {
@@ -134,6 +135,7 @@ Result<CloudHead> ReadPlyHead(CloudBytes* bytes) {
       if (!points && !any) return WrongHead(*bytes, line, "element vertex first");
       any |= points;
       behind |= !points;
+      head.goes_on = behind;
       of_points = points && !behind;
     } else if (words[0] == "property" && of_points) {
       SCANCAL_ASSIGN_OR_RETURN(CloudField field, PlyProperty(*bytes, line, words));
@@ -236,6 +238,13 @@ class CloudReader : public ScanReader {
       const auto is_not = [&](const auto& each) { return values_[each.first] != each.second; };
       if (point_ < first_ || std::any_of(where_.begin(), where_.end(), is_not)) continue;
       SCANCAL_RETURN_IF_ERROR(Give(batch));
+    }
+    if (point_ == head_.points && !head_.goes_on && !at_end_) {
+      at_end_ = true;
+      SCANCAL_ASSIGN_OR_RETURN(const char* const behind, bytes_.Record(2));  // a line end may follow, or zeros
+      if (behind && !WithoutBlanks(std::string_view(behind, 2)).empty() && *behind != '\0' && *behind != '\n')
+        return Error{bytes_.name() + ": found more behind the " + std::to_string(head_.points) +
+                     " points that its head counts, expected the end of the file"};
     }
     any_point_ |= batch->size() > 0;
     if (!any_point_ && missing_ == 0) return NoPoints(format_, head_.points);
@@ -368,7 +377,7 @@ class CloudReader : public ScanReader {
   std::vector<std::pair<size_t, double>> where_;
   std::vector<double> values_;  // of the point in hand, one for each field
   int64_t first_ = 1, last_ = std::numeric_limits<int64_t>::max(), point_ = 0;
-  bool any_point_ = false;
+  bool any_point_ = false, at_end_ = false;
   std::string description_;
 };
 

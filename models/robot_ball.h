@@ -75,8 +75,8 @@ class Model {
     Eigen::Isometry3d base_from_artifact = Eigen::Isometry3d::Identity();  // where artifact_x .. _rz start
   };
 
-  // Hand-eye estimated from zero; links as SetDefaultLinkRoles says; noise estimated; spheres held; of a single one no turn.
-  // measured_in_world: the spheres are on the tool.
+  // Hand-eye estimated from zero; links as SetDefaultLinkRoles says; noise estimated; spheres held; of a single one no
+  // turn. measured_in_world: the spheres are on the tool.
   Model(std::vector<Link> links, std::vector<Sphere> spheres, bool measured_in_world = false);
   const Quantities& quantities() const { return quantities_; }
   Quantity& quantity(int k) { return quantities_[k]; }

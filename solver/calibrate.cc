@@ -268,8 +268,11 @@ Solution SolveWeighted(const Solution& plain, double least, const RefineOptions&
   Solution solution = Solve(std::move(problem), start, options);
   if (ordered) {
     const Neighbours neighbours = CorrelationOfNeighbours(solution.problem, solution.fit.estimate, solution.linear);
-    if (neighbours.IsSignificant() && EstimateNeighbours(&solution.problem, solution.fit.estimate, &variances))
+    NeighboursFound found;
+    if (neighbours.IsSuspected()) found = EstimateNeighbours(&solution.problem, solution.fit.estimate, &variances);
+    if (found.what == NeighboursFound::kNoise)
       solution = Solve(std::move(solution.problem), solution.fit.estimate, options);
+    solution.neighbours = found;
   }
   solution.fit.iterations += plain.fit.iterations;
   solution.naive = plain.naive;

@@ -7,6 +7,7 @@
 #include "solver/refine.h"
 #include "solver/uncertainty/covariance.h"
 #include "solver/uncertainty/jackknife.h"
+#include "solver/uncertainty/neighbours.h"
 #include "solver/uncertainty/variances.h"
 
 namespace scancal {
@@ -26,6 +27,7 @@ struct Solution {
   Observability observability;
   Covariance naive;                    // of the fit with equal weights
   std::optional<Variances> variances;  // those that weigh the problem; none: equal weights
+  NeighboursFound neighbours = {};
 };
 
 // Refines and looks at what the data determine. Does not judge.

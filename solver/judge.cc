@@ -41,6 +41,19 @@ constexpr Message<double, double> kNeighboursCorrelated{
     "model, u is too small by a factor of about {:.2g}",
     "Benachbarte Ansichten sind korreliert ({:.2g}), zählen aber als unabhängig: Soweit dies weder Formabweichung noch "
     "ein falsches Modell ist, ist u etwa um den Faktor {:.2g} zu klein"};
+constexpr Message<double> kTooSlowForNoise{
+    "solver.too_slow_for_noise",
+    "the residuals wander along the views, and so slowly (correlation {:.2g} from one view to the next) that it is no "
+    "noise: drift, form, or something that the model lacks; u does not hold it",
+    "Die Residuen wandern längs der Ansichten, und so langsam (Korrelation {:.2g} von einer zur nächsten), dass es "
+    "kein "
+    "Rauschen ist: Drift, Formabweichung oder etwas, das dem Modell fehlt; u enthält es nicht"};
+constexpr Message<std::string_view, double, std::string_view> kSmoothErrors{
+    "solver.smooth_errors",
+    "{} is held, but smooth errors of {:.2g}{} in the targets explain the residuals better than noise does; declare "
+    "them: u does not hold them",
+    "{} ist festgehalten, glatte Abweichungen der Prüfkörper von {:.2g}{} erklären die Residuen jedoch besser als "
+    "Rauschen; sie sind anzugeben, u enthält sie nicht"};
 constexpr Message<double, double> kNeighboursCounted{"solver.neighbours_counted",
                                                      "the noise of neighbouring views is correlated ({:.2g}, "
                                                      "estimated); u allows for it, and would be smaller by a factor of "
@@ -232,8 +245,23 @@ void JudgeNeighbours(const Solution& solution, Calibration* result) {
             std::sqrt(1 + 2 * std::max(0.0, neighbours.correlation) / (1 - result->neighbour_noise))));
     return;
   }
+  if (solution.neighbours.what == NeighboursFound::kSmooth) {
+    const Quantity* held = nullptr;
+    for (const Quantity& q : solution.problem.quantities)
+      if (q.Source() == solution.neighbours.source) held = &q;
+    const std::string unit = held && held->unit != Unit::kOne ? " " + std::string(Name(held->unit)) : "";
+    const auto said = [&](const MisfitTest& test) {
+      return test.source == solution.neighbours.source && test.p < kSuspicious;
+    };
+    if (std::none_of(result->misfits.begin(), result->misfits.end(), said))
+      result->unreliable.push_back(Say(kSmoothErrors, solution.neighbours.source, solution.neighbours.u, unit));
+  }
   // What is considered looks the same, and is in u.
   if (!solution.problem.With({Scope::kSystem, Scope::kTarget}, Role::kConsider).empty()) return;
+  if (solution.neighbours.what == NeighboursFound::kTooSlow && result->sigma >= kLeastSigma_mm) {
+    result->unreliable.push_back(Say(kTooSlowForNoise, solution.neighbours.correlation));
+    return;
+  }
   // Of data without noise rounding is left, which is no noise of neighbours.
   if (!neighbours.IsSignificant() || result->sigma < kLeastSigma_mm) return;
   // The variance of the mean of a series whose correlation falls as rho^lag is (1 + rho) / (1 - rho) times that of an

@@ -69,6 +69,14 @@ constexpr Message<double, double, double, double> kOneWay{
     "es "
     "ist nicht in u: vor und zurück drehen oder drift_sweep oder drift angeben"};
 
+constexpr Message<double, double> kFlat{
+    "turntable.flat",
+    "form: plates that are 10 um rms off their planes, each in its own way, would move M by ±{:.2g} mm and N by "
+    "±{:.2g} "
+    "mm; no form is declared, and none is in u: declare flatness or form",
+    "Form: Platten, die um 10 um (quadratisches Mittel) von ihren Ebenen abweichen, jede auf ihre Art, verschöben M um "
+    "±{:.2g} mm und N um ±{:.2g} mm; angegeben ist keine Form, und u enthält keine: flatness oder form angeben"};
+
 constexpr Message<double, double> kBetweenScans{
     "turntable.between_scans",
     "drift: depth drifts by {:.2g} mm over a scan; whether it goes on from one scan to the next, or begins anew, the "
@@ -176,6 +184,29 @@ std::optional<Sentence> NoteOnDrift(const JointFit& fit) {
     return e < moves.rows() ? moves(e, drift) : 0;
   };
   return Say(kOneWay, by(0, Model::kM), by(0, Model::kN), by(1, Model::kM), by(1, Model::kN));
+}
+
+std::optional<Sentence> NoteOnForm(const JointFit& fit) {
+  constexpr double kShown_mm = 0.01;
+  Problem problem = fit.solution.problem;
+  if (problem.quantities[Model::kForm].role != Role::kHold) return std::nullopt;
+  for (Quantity& quantity : problem.quantities)
+    if (quantity.role == Role::kConsider) quantity.role = Role::kHold;
+  for (int k = 0; k < kFormModes; ++k) {
+    problem.quantities[Model::kForm + k].role = Role::kConsider;
+    problem.quantities[Model::kForm + k].u = kShown_mm;
+  }
+  const std::vector<int> estimated = problem.With({Scope::kSystem}, Role::kEstimate);
+  const Budget budget = BudgetOf(problem, fit.solution.fit.estimate, fit.solution.linear);
+  const auto by = [&](int of) {
+    const auto e = std::find(estimated.begin(), estimated.end(), of) - estimated.begin();
+    for (const Contribution& line : budget.lines)
+      if (line.source == problem.quantities[Model::kForm].Source() && e < std::ssize(estimated))
+        return std::sqrt(line.covariance(e, e));
+    return 0.0;
+  };
+  const double M = by(Model::kM), N = by(Model::kN);
+  return M > 0 || N > 0 ? std::optional(Say(kFlat, M, N)) : std::nullopt;
 }
 
 JointFit Scanner::Fit(const System& system, Model::Residuals residuals, const FitChoice& choice) const {

@@ -73,16 +73,6 @@ constexpr Message<std::string_view, double, Sentence> kMuchSetAside{
     "Prüfkörper {}: {:.0f} % seiner Punkte blieben außer Betracht, die meisten davon {}: Enthält der Scan mehr als "
     "eine "
     "Ebene? Mit keep zuschneiden"};
-constexpr Message<std::string_view, double, double, double, double> kTwoPlanes{
-    "turntable.two_planes",
-    "target {}: the scan holds more than one plane: one fits its profiles to {:.2g} mm rms, but two, up to {:.0f} of "
-    "its "
-    "{:.0f} profiles (in the order of their angles) and from there on, to {:.2g} mm; crop it with keep, a target for "
-    "each plane",
-    "Prüfkörper {}: Der Scan enthält mehr als eine Ebene: Eine passt auf {:.2g} mm (quadratisches Mittel) zu seinen "
-    "Profilen, zwei jedoch, bis zu {:.0f} seiner {:.0f} Profile (nach ihren Winkeln geordnet) und von da an, auf "
-    "{:.2g} "
-    "mm; mit keep zuschneiden, ein Prüfkörper je Ebene"};
 constexpr Message<> kOffTheLine{"turntable.off_the_line", "off the line of their profile",
                                 "abseits der Geraden ihres Profils"};
 constexpr Message<> kOffThePlane{"turntable.off_the_plane", "off the plane of most", "abseits der Ebene der meisten"};
@@ -195,46 +185,6 @@ Result<void> CheckDepths(const std::vector<Placement>& placements) {
                       placement.name, sigma, range)};
   }
   return {};
-}
-
-// Whether each placement is one plane, or two that the sweep goes over one after the other.
-void JudgePlanes(const std::vector<Placement>& placements, const System& system, Calibration* calibration) {
-  constexpr double kFarAboveNoise = 5, kExplained = 0.1;  // a plane that is bent by a wrong model leaves a quarter
-  constexpr size_t kFewest = 20;
-  for (const Placement& placement : placements) {
-    const size_t n = placement.profiles.size();
-    const double whole = PlaneStorey(placement.profiles, system).Rmse(system.M(), system.N(), PlaneFit::kOrthogonal);
-    if (n < kFewest || !(whole > kFarAboveNoise * placement.Pure().sigma())) continue;
-    std::vector<Profile> ordered = placement.profiles;
-    std::stable_sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) { return a.alpha < b.alpha; });
-    const auto squares = [&](size_t from, size_t to) {
-      const std::vector<Profile> part(ordered.begin() + static_cast<std::ptrdiff_t>(from),
-                                      ordered.begin() + static_cast<std::ptrdiff_t>(to));
-      double points = 0;
-      for (const Profile& profile : part) points += profile.count;
-      return points * std::pow(PlaneStorey(part, system).Rmse(system.M(), system.N(), PlaneFit::kOrthogonal), 2);
-    };
-    // The places that are tried come nearer to the best so far.
-    size_t best = n / 2;
-    double least = squares(0, best) + squares(best, n);
-    for (size_t step = n / 8; step > 0; step /= 2) {
-      const size_t middle = best;
-      for (size_t at = middle > 4 * step ? middle - 3 * step : step; at < std::min(n - 1, middle + 4 * step);
-           at += step) {
-        if (at < 2 || at + 2 > n) continue;
-        const double sum = squares(0, at) + squares(at, n);
-        if (sum < least) {
-          least = sum;
-          best = at;
-        }
-      }
-    }
-    const double apart = std::sqrt(least / placement.Points());
-    if (apart < kExplained * whole)
-      calibration->unreliable.insert(
-          calibration->unreliable.begin(),
-          Say(kTwoPlanes, placement.name, whole, static_cast<double>(best), static_cast<double>(n), apart));
-  }
 }
 
 // Profiles that are missing in the middle of a sweep, and points of which much was set aside.
@@ -361,6 +311,7 @@ void Judge(const GridBox& box, const std::vector<Placement>& placements, const G
   JudgeSearch(box, grid.best, calibration);
   JudgeOrientations(fit, calibration);
   JudgePlanes(placements, fit.Found().With(grid.best.at[0], grid.best.at[1]), calibration);
+  JudgeProfiles(placements, calibration);
   JudgeScans(placements, calibration);
   double widest = 0;
   for (const Placement& placement : placements) widest = std::max(widest, placement.Sweep());

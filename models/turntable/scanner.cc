@@ -197,6 +197,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   if (between) result.notes.push_back(*between);
   if (fit.plate_cut_off) result.notes.push_back(Say(kPlateCutOff));
   if (const std::optional<Sentence> drift = NoteOnDrift(fit)) result.notes.push_back(*drift);
+  if (const std::optional<Sentence> form = plane ? std::nullopt : NoteOnForm(fit)) result.notes.push_back(*form);
   JudgeCurvature(placements_, fit, &result);
   JudgeMirrorImage(declaration_.senses.depth_declared, box, placements_, &result);
   AddVolume(placements_, &result);

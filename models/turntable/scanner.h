@@ -93,6 +93,13 @@ void Judge(const GridBox& box, const std::vector<Placement>& placements, const G
 // What a drift of the depth would move M and N by, where sweeps go one way and nobody has declared one: nothing if they
 // tell it, or it is declared.
 std::optional<Sentence> NoteOnDrift(const JointFit& fit);
+// What plates that are not flat would move M and N by, where nothing of it was declared.
+std::optional<Sentence> NoteOnForm(const JointFit& fit);
+
+// Whether each placement is one plane: from profile to profile (in the frame of the table as `system` says), and within
+// its profiles. The first of what is unreliable.
+void JudgePlanes(const std::vector<Placement>& placements, const System& system, Calibration* calibration);
+void JudgeProfiles(const std::vector<Placement>& placements, Calibration* calibration);
 
 // Whether all profiles are bent alike, as by the lens, by so much that M or N would be wrong by more than u.
 void JudgeCurvature(const std::vector<Placement>& placements, const JointFit& fit, Calibration* calibration);

@@ -272,19 +272,33 @@ bool Neighbours::IsSignificant() const {
   return correlation >= std::max(kFarFromIndependent * standard_error, kLeastCorrelation);
 }
 
+bool Neighbours::IsSuspected() const {
+  constexpr double kFar = 4;
+  return IsSignificant() || wandering > kFar;
+}
+
 Neighbours CorrelationOfNeighbours(const Problem& problem, const Estimate& fit, const Linearization& linear) {
+  constexpr double kForgets[] = {0, 0.8, 0.95};
   const std::vector<int> of_view = problem.With({Scope::kView}, Role::kConsider);
   double products = 0, squares_of_products = 0, squares = 0;
+  Eigen::ArrayXXd sums = Eigen::ArrayXXd::Zero(std::ssize(of_view), std::size(kForgets)), spread = sums;
   for (size_t t = 0; t < problem.targets.size(); ++t) {
     const std::vector<double> values = Values(problem, fit, t);
     const LinearTarget& target = linear.targets[t];
     Eigen::VectorXd before;
+    Eigen::ArrayXXd smooth = 0 * sums;
     for (size_t v = 0; v < problem.targets[t].views.size(); ++v) {
       const Block& view = problem.targets[t].views[v];
       if (!view.prior.empty()) continue;
       const Eigen::MatrixXd effects = view.Weighted(RawDerivatives(view, values, of_view)).colwise().normalized();
       const Eigen::VectorXd z = effects.transpose() * target.r.segment(target.first[v], effects.rows());
       squares += z.squaredNorm();
+      for (Eigen::Index k = 0; k < sums.cols(); ++k) {
+        const Eigen::ArrayXd product = z.array() * smooth.col(k);
+        sums.col(k) += product;
+        spread.col(k) += product.square();
+        smooth.col(k) = kForgets[k] * smooth.col(k) + z.array();
+      }
       if (before.size()) {
         products += z.dot(before);
         squares_of_products += z.dot(before) * z.dot(before);
@@ -293,7 +307,8 @@ Neighbours CorrelationOfNeighbours(const Problem& problem, const Estimate& fit, 
     }
   }
   if (!(squares > 0)) return {};
-  return {products / squares, std::sqrt(squares_of_products) / squares};
+  const double wandering = (spread > 0).select(sums / spread.max(1e-300).sqrt(), 0.0).maxCoeff();
+  return {products / squares, std::sqrt(squares_of_products) / squares, wandering};
 }
 
 }  // namespace scancal

@@ -36,7 +36,11 @@ Change FindChange(const Problem& problem, const Estimate& fit, const Linearizati
 // 1). The standard error is that of independent pairs, from their own spread: effects may look alike.
 struct Neighbours {
   double correlation = 0, standard_error = 0;
+  // The largest of sum z_v . (z_v-1 + rho z_v-2 + rho^2 z_v-3 ...) for rho of 0, 0.8 and 0.95 and each of those effects
+  // alone, in standard deviations of independent views: what wanders slowly, but little, shows there.
+  double wandering = 0;
   bool IsSignificant() const;  // 4 standard errors, and makes u too small by a tenth
+  bool IsSuspected() const;    // or wanders by 4 standard deviations
 };
 Neighbours CorrelationOfNeighbours(const Problem& problem, const Estimate& fit, const Linearization& linear);
 

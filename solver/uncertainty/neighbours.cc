@@ -15,8 +15,9 @@ constexpr int kMostRows = 12;
 constexpr double kFewestStretches = 5;
 constexpr double kSignificant = 16, kLeastCorrelation = 0.1;
 constexpr int kMostEvaluations = 240;
-constexpr double kSmall = 1e-6;    // mm, rad: where a standard deviation begins that may be none
-constexpr double kSettled = 1e-2;  // of -2 l: a tenth of a standard error
+constexpr std::string_view kPrior = "prior of ";  // as Problem::AddPriors names them
+constexpr double kSmall = 1e-6;                   // mm, rad: where a standard deviation begins that may be none
+constexpr double kSettled = 1e-2;                 // of -2 l: a tenth of a standard error
 
 using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRows, kMostRows>;
 
@@ -212,9 +213,9 @@ Eigen::VectorXd Minimum(const std::function<double(const Eigen::VectorXd&)>& f, 
 
 }  // namespace
 
-bool EstimateNeighbours(Problem* problem, const Estimate& at, Variances* variances) {
+NeighboursFound EstimateNeighbours(Problem* problem, const Estimate& at, Variances* variances) {
   for (const Quantity& q : problem->quantities)
-    if (q.scope == Scope::kView && q.role == Role::kConsider && !q.in_order) return false;
+    if (q.scope == Scope::kView && q.role == Role::kConsider && !q.in_order) return {};
   Problem free = *problem;
   const std::vector<int> considered = problem->With({Scope::kSystem, Scope::kTarget}, Role::kConsider);
   for (const int k : considered) free.quantities[k].role = Role::kEstimate;
@@ -224,14 +225,14 @@ bool EstimateNeighbours(Problem* problem, const Estimate& at, Variances* varianc
   for (const int k : held) {
     free.quantities[k].role = Role::kEstimate;
     free.quantities[k].u = 1;
-    const std::string source = "prior of " + free.quantities[k].Source();  // as AddPriors names it
+    const std::string source = std::string(kPrior) + free.quantities[k].Source();
     if (std::find(sources.begin(), sources.end(), source) == sources.end()) sources.push_back(source);
   }
   free.AddPriors(held);
   Estimate there = NominalStart(free);
   for (size_t t = 0; t < problem->targets.size(); ++t) SetValues(free, Values(*problem, at, t), t, &there);
   const Likelihood likelihood(free, there, sources);
-  if (!likelihood.sound()) return false;
+  if (!likelihood.sound()) return {};
   const std::vector<int>& all = likelihood.quantities();
   Eigen::VectorXd u(std::ssize(all));
   std::vector<Eigen::Index> estimated;
@@ -272,7 +273,7 @@ bool EstimateNeighbours(Problem* problem, const Estimate& at, Variances* varianc
   Eigen::VectorXd best = white;
   best[last] = std::atanh(0.5);
   const double correlated = minimise(&best, false, true);
-  if (!(f(white) - correlated > kSignificant)) return false;
+  if (!(f(white) - correlated > kSignificant)) return {};
   if (of_target > 0) {
     Eigen::VectorXd smooth = white;
     double least = f(smooth);
@@ -287,13 +288,21 @@ bool EstimateNeighbours(Problem* problem, const Estimate& at, Variances* varianc
     if (least < correlated) {
       best = smooth;
       best[last] = std::atanh(0.5);
-      if (!(least - minimise(&best, true, true) > kSignificant)) return false;
+      if (!(least - minimise(&best, true, true) > kSignificant)) {
+        const Eigen::Index most = [&] {
+          Eigen::Index k = 0;
+          smooth.segment(of_view, of_target).maxCoeff(&k);
+          return k;
+        }();
+        const std::string& prior = sources[static_cast<size_t>(most)];
+        return {NeighboursFound::kSmooth, 0, prior.substr(kPrior.size()), std::exp(smooth[of_view + most])};
+      }
     }
   }
   const Guess found = unpack(best);
   const double rho = found.rho;
-  if (rho < kLeastCorrelation) return false;
-  if (likelihood.views() * (1 - rho) < kFewestStretches * (1 + rho)) return false;
+  if (rho < kLeastCorrelation) return {};
+  if (likelihood.views() * (1 - rho) < kFewestStretches * (1 + rho)) return {NeighboursFound::kTooSlow, rho, "", 0};
   const double fewer = (3 + rho * rho) / (1 - rho * rho);
   for (Eigen::Index k = 0; k < u.size(); ++k) {
     Quantity& q = problem->quantities[all[static_cast<size_t>(k)]];
@@ -313,7 +322,7 @@ bool EstimateNeighbours(Problem* problem, const Estimate& at, Variances* varianc
     }
   }
   Weigh(problem, at);
-  return true;
+  return {NeighboursFound::kNoise, rho, "", 0};
 }
 
 Eigen::MatrixXd AcrossNeighbours(const Problem& problem, const Estimate& fit, const Linearization& linear,

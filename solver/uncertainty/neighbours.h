@@ -1,9 +1,17 @@
 // Views in an order, of which neighbours err alike.
 #pragma once
+#include <string>
 #include "solver/linearize.h"
 #include "solver/uncertainty/variances.h"
 
 namespace scancal {
+
+struct NeighboursFound {
+  enum { kNone, kNoise, kTooSlow, kSmooth } what = kNone;
+  double correlation = 0;  // kTooSlow: of neighbours
+  std::string source;      // kSmooth: what is held of a target, and the u that explains the residuals
+  double u = 0;
+};
 
 // The quantities of view scope that are in_order as first-order autoregressive processes along the views of a target:
 // x_v = rho x_v-1 + w_v, of standard deviation u each, and one rho for all. rho and the u that were estimated come from
@@ -18,13 +26,15 @@ namespace scancal {
 //
 // Where the likelihood ratio against rho = 0 is above 16 (p = 6e-5) and rho above 0.1 - with those smooth errors in
 // both, if they alone explain more than the correlation alone - sets u and `neighbour` of these quantities, weighs the
-// problem with them, and returns true. Weights stay those of
-// independent views: for regressors as smooth as these they lose nothing (Grenander and Rosenblatt, Statistical
-// Analysis of Stationary Time Series, 1957, ch. 7); u is K V K' with the V that was found. The degrees of freedom of
-// the variances, and with them k, allow for the fewer independent views and for rho itself. False, and nothing changed,
-// where views have more than 12 rows, or where so few independent stretches are left (below 5 in all) that it is no
-// noise any more.
-bool EstimateNeighbours(Problem* problem, const Estimate& at, Variances* variances);
+// problem with them: kNoise. Weights stay those of independent views: for regressors as smooth as these they lose
+// nothing (Grenander and Rosenblatt, Statistical Analysis of Stationary Time Series, 1957, ch. 7); u is K V K' with the
+// V that was found. The degrees of freedom of the variances, and with them k, allow for the fewer independent views and
+// for rho itself.
+//
+// Else nothing is changed: kSmooth where smooth errors explain the residuals, by the same ratio; kTooSlow where so few
+// independent stretches are left (below 5 in all) that it is no noise any more; kNone also where views have more than
+// 12 rows.
+NeighboursFound EstimateNeighbours(Problem* problem, const Estimate& at, Variances* variances);
 
 // What neighbours that err alike add to the covariance of sums over the whitened rows of a target: C'VC - C'C, C =
 // columns (rows x sums), V the covariance of those rows, whose blocks of single views are the identity. linear: of the

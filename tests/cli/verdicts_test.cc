@@ -69,6 +69,18 @@ TEST_F(VerdictsOfProgramTest, AScanOfTwoPlanesIsTold) {
               AllOf(HasSubstr("target left: the scan holds more than one plane"), HasSubstr("crop it with keep")));
 }
 
+TEST_F(VerdictsOfProgramTest, AStepWithinTheProfilesIsTold) {
+  const fs::path data = MakeData();
+  EXPECT_THAT(Sentences(Refined(data), "unreliable"), IsEmpty());
+  std::vector<ScanPoint> points = ReadPoints(data / "left.csv");
+  for (ScanPoint& p : points)
+    if (p.z > 5) p.y += 0.5;  // ten standard deviations
+  WritePoints(data / "left.csv", points);
+  const std::string first = Refined(data, 2)["unreliable"][0];
+  EXPECT_THAT(first, AllOf(HasSubstr("target left: its profiles are two lines rather than one"),
+                           HasSubstr("an edge or a step: crop it with keep")));
+}
+
 TEST_F(VerdictsOfProgramTest, PlacementsSixDegreesApartAreDifferent) {
   const Json result = Refined(Write({.planes = {{0, 10, 480}, {6.5, 10, 470}}}));
   EXPECT_THAT(Sentences(result, "unreliable"), IsEmpty());

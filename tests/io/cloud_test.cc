@@ -139,6 +139,8 @@ TEST_F(CloudTest, CountsInHeadersAreNotTrusted) {
   wide.replace(wide.find("99999"), 5, "99999999999");
   EXPECT_THAT(Read(wide).error, HasSubstr(":6: found \"COUNT 1 99999999999 1 1\", expected numbers, one for each"));
   EXPECT_THAT(Read(AsciiPly("0")).error, HasSubstr(": no points"));
+  for (const std::string& contents : {AsciiPcd("2"), BinaryPcd("2")})
+    EXPECT_THAT(Read(contents).error, HasSubstr(": found more behind the 2 points that its head counts"));
 }
 
 TEST_F(CloudTest, OtherHeadsAreErrorsWithTheirLine) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <cmath>
 #include "solver/calibrate.h"
+#include "solver/uncertainty/covariance.h"
 #include "solver/uncertainty/jackknife.h"
 #include "solver/uncertainty/misfit.h"
 #include "tests/solver/line_model.h"
@@ -107,8 +108,48 @@ TEST(EstimateNeighbours, LeavesSmoothErrorsOfATarget) {
   scene.curvature = 0.01;
   const Problem problem = ProblemOf(scene, Role::kEstimate);
   const Solution solution = SolveWeighted(Solve(problem, NominalStart(problem)), 1e-9);
-  ASSERT_TRUE(CorrelationOfNeighbours(solution.problem, solution.fit.estimate, solution.linear).IsSignificant());
   EXPECT_EQ(solution.problem.quantities[LineModel::kShift].neighbour, 0);
+  ASSERT_EQ(solution.neighbours.what, NeighboursFound::kSmooth);
+  EXPECT_EQ(solution.neighbours.source, "curvature");
+  EXPECT_GT(solution.neighbours.u, 0.005);  // of three lines, each with 0.01
+  EXPECT_LT(solution.neighbours.u, 0.02);
+}
+
+// Views that wander as one sum of steps, by less than their own scatter: no lag alone shows it.
+TEST(EstimateNeighbours, SaysWhatIsTooSlowForNoise) {
+  LineScene scene = Correlated(0, 5);
+  scene.views = 100;
+  scene.shift = 0.1;
+  auto lines = scene.Make();
+  Random random(6, 0);
+  for (LineModel::Target& line : lines) {
+    double wandered = 0;
+    for (LineModel::View& view : line.views) {
+      wandered += 0.03 * random.Normal();
+      for (double& y : view.y) y += wandered;
+    }
+  }
+  auto model = std::make_shared<LineModel>();
+  model->quantity(LineModel::kShift).role = model->quantity(LineModel::kNoise).role = Role::kEstimate;
+  model->quantity(LineModel::kShift).in_order = true;
+  Problem problem = MakeProblem<LineModel>(model, std::move(lines));
+  problem.WeighEqually(kNoise);
+  const Solution solution = SolveWeighted(Solve(problem, NominalStart(problem)), 1e-9);
+  EXPECT_NE(solution.neighbours.what, NeighboursFound::kNone);
+  const Calibration result = Summarize(solution, {});
+  const double u_if_independent = std::sqrt(InverseInformation(solution.linear)(0, 0));
+  EXPECT_TRUE(!result.unreliable.empty() || result.Find("slope")->u > 2 * u_if_independent);
+}
+
+TEST(CorrelationOfNeighbours, SuspectsNoIndependentViews) {
+  constexpr int kTrials = 200;
+  int suspected = 0;
+  for (int trial = 1; trial <= kTrials; ++trial) {
+    const Problem problem = ProblemOf(Correlated(0, static_cast<uint64_t>(trial)), Role::kEstimate);
+    const Solution solution = SolveWeighted(Solve(problem, NominalStart(problem)), 1e-9);
+    suspected += CorrelationOfNeighbours(solution.problem, solution.fit.estimate, solution.linear).IsSuspected();
+  }
+  EXPECT_LE(suspected, 3);  // three tries a set at four standard deviations, a few of them correlated: 1e-4 a set
 }
 
 }  // namespace
