@@ -241,8 +241,8 @@ class CloudReader : public ScanReader {
     }
     if (point_ == head_.points && !head_.goes_on && !at_end_) {
       at_end_ = true;
-      SCANCAL_ASSIGN_OR_RETURN(const char* const behind, bytes_.Record(2));  // a line end may follow, or zeros
-      if (behind && !WithoutBlanks(std::string_view(behind, 2)).empty() && *behind != '\0' && *behind != '\n')
+      SCANCAL_ASSIGN_OR_RETURN(const char* const behind, bytes_.Record(2));  // a line end may follow
+      if (behind && !WithoutBlanks(std::string_view(behind, 2)).empty() && *behind != '\n')
         return Error{bytes_.name() + ": found more behind the " + std::to_string(head_.points) +
                      " points that its head counts, expected the end of the file"};
     }

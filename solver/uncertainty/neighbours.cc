@@ -294,6 +294,7 @@ NeighboursFound EstimateNeighbours(Problem* problem, const Estimate& at, Varianc
           smooth.segment(of_view, of_target).maxCoeff(&k);
           return k;
         }();
+        if (!(std::exp(smooth[of_view + most]) > kSmall)) return {};  // rounding
         const std::string& prior = sources[static_cast<size_t>(most)];
         return {NeighboursFound::kSmooth, 0, prior.substr(kPrior.size()), std::exp(smooth[of_view + most])};
       }
