@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include "solver/dense.h"
+#include "solver/parallel.h"
 #include "solver/weigh.h"
 
 namespace scancal {
@@ -109,9 +110,13 @@ class Likelihood {
     double logs = 0;
     TriangularFactor whole(static_cast<int>(system_) + 1);
     whole.Add(system_priors_);
-    for (const Ordered& target : targets_) {
-      const Eigen::MatrixXd rows = Filtered(target, guess, &logs);
-      const Eigen::MatrixXd r = UpperTriangle(rows);
+    std::vector<Eigen::MatrixXd> triangles(targets_.size());
+    std::vector<double> of_target(targets_.size());
+    InParallel(targets_.size(), 0,
+               [&](size_t t) { triangles[t] = UpperTriangle(Filtered(targets_[t], guess, &of_target[t])); });
+    for (size_t t = 0; t < targets_.size(); ++t) {
+      const Eigen::MatrixXd& r = triangles[t];
+      logs += of_target[t];
       for (Eigen::Index k = 0; k < own_; ++k) logs += 2 * std::log(std::abs(r(k, k)));
       whole.Add(r.bottomRightCorner(system_ + 1, system_ + 1));
     }
@@ -149,17 +154,18 @@ class Likelihood {
       }
       first = false;
       const Eigen::Index n = view.columns.rows();
-      const Small across = covariance * view.effects.transpose();
-      Small spread = view.effects * across;
+      // A few rows each: coefficient by coefficient is faster than what is made for large matrices.
+      const Small across = covariance.lazyProduct(view.effects.transpose());
+      Small spread = view.effects.lazyProduct(across);
       spread.diagonal().array() += 1;
       const Eigen::LLT<Small> llt(spread);
-      innovation = view.columns - view.effects * state;
-      const Small gain = llt.solve(across.transpose()).transpose();
-      state += gain * innovation;
-      covariance -= gain * across.transpose();
+      innovation = view.columns - view.effects.lazyProduct(state);
+      const Small whitening = llt.matrixL().solve(Small::Identity(n, n));
+      const Small whitened = whitening.lazyProduct(across.transpose());
+      filtered.middleRows(row, n) = whitening.lazyProduct(innovation);
+      state += whitened.transpose().lazyProduct(filtered.middleRows(row, n));
+      covariance -= whitened.transpose().lazyProduct(whitened);
       for (Eigen::Index k = 0; k < n; ++k) *logs += 2 * std::log(llt.matrixLLT()(k, k));
-      llt.matrixL().solveInPlace(innovation);
-      filtered.middleRows(row, n) = innovation;
       row += n;
     }
     return filtered;
