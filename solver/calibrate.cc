@@ -43,7 +43,6 @@ constexpr Message<std::string_view, double, double> kViewsScatterMore{
 
 // What of the clustered covariance the headline lacks, if chance does not explain it.
 void AddScatterOfViews(const Solution& solution, const Covariance& clustered, Headline* headline) {
-  constexpr double kChance = 1e-3;
   const Eigen::VectorXd dof = DofOfClusters(solution.problem, solution.linear);
   const Eigen::Index n = dof.size();
   double least = 1;
@@ -58,7 +57,7 @@ void AddScatterOfViews(const Solution& solution, const Covariance& clustered, He
       worst = k;
     }
   }
-  if (!(least < kChance)) return;
+  if (!(least < kSuspicious)) return;
   const Eigen::VectorXd u = headline->covariance.diagonal().cwiseSqrt();
   const SymmetricEigen eigen = EigenOf(u.cwiseInverse().asDiagonal() * (clustered.matrix - headline->covariance) *
                                        u.cwiseInverse().asDiagonal());
