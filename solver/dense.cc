@@ -31,6 +31,10 @@ Eigen::MatrixXd LeastSquares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B)
   return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(A).solve(B);
 }
 
+Eigen::Isometry3d MotionOnto(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& onto) {
+  return Eigen::Isometry3d(Eigen::umeyama(from, onto, false));
+}
+
 TriangularFactor::TriangularFactor(int columns)
     : stack_(Eigen::MatrixXd::Zero(columns + std::max(64, 8 * columns), columns)),
       filled_(columns),

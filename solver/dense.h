@@ -1,7 +1,7 @@
 // Decompositions of dense matrices: Eigen's, compiled once, for wherever they are instantiated each takes a compiler
 // from 3 (QR) to 40 seconds (its divide-and-conquer SVD).
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace scancal {
 
@@ -30,6 +30,10 @@ SymmetricEigen EigenOf(const Eigen::MatrixXd& symmetric);
 
 // X of least norm among those with least |A X - B|, by complete orthogonal decomposition (Golub and Van Loan, 5.5).
 Eigen::MatrixXd LeastSquares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+// The rigid motion with the least sum of |motion from_k - onto_k|^2, columns of 3 x n (Umeyama, IEEE PAMI 13, 1991,
+// 376).
+Eigen::Isometry3d MotionOnto(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& onto);
 
 // R (n x n, upper triangular) with |R t| = |F t| for every t, of a tall matrix F that is never held: rows are added in
 // any number, factors of parts of F merge. By Householder QR of the stacked rows (Lawson and Hanson, Solving Least

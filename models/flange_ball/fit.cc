@@ -2,6 +2,7 @@
 #include <memory>
 #include "models/flange_ball/scanner.h"
 #include "models/scanner.h"
+#include "solver/dense.h"
 
 namespace scancal::flange_ball {
 namespace {
@@ -38,7 +39,7 @@ Robot FitBall(const std::vector<Link>& links, const std::vector<Model::Target>& 
       row += 3;
     }
   }
-  return {links, moved.leftCols<3>().colPivHouseholderQr().solve(-moved.col(3))};
+  return {links, LeastSquares(moved.leftCols<3>(), -moved.col(3))};
 }
 
 Seating SeatingOf(const Robot& robot, const Model::Target& tool) {

@@ -2,12 +2,12 @@
 #include <ceres/jet.h>
 #include <glog/logging.h>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include "io/units.h"
 #include "models/robot_ball/simulate.h"
+#include "solver/dense.h"
 
 namespace scancal::robot_ball {
 namespace {
@@ -81,9 +81,9 @@ Eigen::Isometry3d PublishedHandEye() {
   printed << 0.0171, 0.9998, 0.0053,  //
       0.9999, -0.0173, 0.0022,        //
       0.0003, 0.0056, -1.0001;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(printed, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Svd svd = SvdOf(printed);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = svd.matrixU() * svd.matrixV().transpose();
+  pose.linear() = svd.u * svd.v.transpose();
   pose.translation() << 1.2874, 0.5842, 264.7846;
   return pose;
 }

@@ -68,7 +68,7 @@ class Agreement {
         world_.push_back(world);
         tool_.push_back(tool);
         tool_from_world_.emplace_back(Eigen::Isometry3d::Identity());
-        if (places_.back()) tool_from_world_.back().matrix() = Eigen::umeyama(world, tool, false);
+        if (places_.back()) tool_from_world_.back() = MotionOnto(world, tool);
       }
   }
 

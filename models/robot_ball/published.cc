@@ -1,6 +1,5 @@
 // The methods on the same robot (Zhou et al. 2025, Table 4 and Figure 8).
 #include "models/robot_ball/published.h"
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -9,6 +8,7 @@
 #include "models/robot_ball/judge.h"
 #include "models/robot_ball/scanner.h"
 #include "models/robot_ball/start.h"
+#include "solver/dense.h"
 
 namespace scancal::robot_ball {
 namespace {
@@ -94,12 +94,12 @@ std::optional<Matrix3d> RotationOfTranslating(const Measurements& points) {
   for (const Station& station : points.stations)
     for (std::vector<View> left = station.views; !left.empty();)
       for (const Move& move : TakeTranslating(points, &left)) sum += move.flange * move.point.transpose();
-  const Eigen::JacobiSVD<Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vector3d& sigma = svd.singularValues();
+  const Svd svd = SvdOf(sum);
+  const Vector3d sigma = svd.values;
   constexpr double kAlongOneLine = 1e-4;  // squared moves: a hundredth of the largest
   if (sigma[0] == 0 || sigma[1] < kAlongOneLine * sigma[0]) return std::nullopt;
-  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  return svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+  const double sign = (svd.u * svd.v.transpose()).determinant();
+  return svd.u * Vector3d(1, 1, sign).asDiagonal() * svd.v.transpose();
 }
 
 Station OnlySphere(Station station, int sphere) {

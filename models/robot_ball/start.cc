@@ -1,7 +1,6 @@
 #include "models/robot_ball/start.h"
 #include <fmt/format.h>
 #include <glog/logging.h>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -203,7 +202,7 @@ Result<std::vector<Station>> StationsAt(const Measurements& data, const Kinemati
           "station {}: the balls that are seen there lie on a line of the artifact: its pose is not determined; see "
           "three balls that do not",
           station.name)};
-    station.base_from_artifact.matrix() = Eigen::umeyama(on_artifact, in_base, false);
+    station.base_from_artifact = MotionOnto(on_artifact, in_base);
   }
   return stations;
 }

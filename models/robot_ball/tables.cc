@@ -7,6 +7,7 @@
 #include "io/message.h"
 #include "models/chain/declare.h"
 #include "models/median.h"
+#include "solver/dense.h"
 
 namespace scancal::robot_ball {
 namespace {
@@ -295,8 +296,7 @@ Result<Shape> ShapeOf(const std::vector<Station>& stations, const std::vector<st
         seen.col(static_cast<Eigen::Index>(b)) = view->balls[b].centre;
         known.col(static_cast<Eigen::Index>(b)) = shape.col(view->balls[b].sphere);
       }
-      Eigen::Isometry3d onto = Eigen::Isometry3d::Identity();
-      onto.matrix() = Eigen::umeyama(seen, known, false);
+      const Eigen::Isometry3d onto = MotionOnto(seen, known);
       for (size_t b = 0; b < view->balls.size(); ++b) {
         sum.col(view->balls[b].sphere) += onto * view->balls[b].centre;
         count[view->balls[b].sphere] += 1;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <memory>
 #include "models/line/noise.h"
+#include "solver/dense.h"
 #include "solver/uncertainty/covariance.h"
 #include "solver/weigh.h"
 
@@ -64,7 +65,7 @@ std::vector<Oracle::Bend> Oracle::BendsOf(const Plate& plate, const std::vector<
       modes.row(i) = Eigen::Map<const Eigen::RowVectorXd>(
           FormModesAt(scaled[0], scaled[1], seen.sizes()[0] / seen.sizes()[1]).data(), kFormModes);
     }
-    const Eigen::MatrixXd fitted = line.colPivHouseholderQr().solve(modes);
+    const Eigen::MatrixXd fitted = LeastSquares(line, modes);
     bends.push_back({fitted.row(0), fitted.row(1)});
   }
   return bends;

@@ -1,10 +1,10 @@
 // A simulated robot that puts the ball on its flange into the sockets of a tool.
 #pragma once
 #include <gtest/gtest.h>
-#include <Eigen/QR>
 #include <numbers>
 #include <vector>
 #include "models/flange_ball/scanner.h"
+#include "solver/dense.h"
 #include "solver/random.h"
 
 namespace scancal::flange_ball {
@@ -50,7 +50,7 @@ inline std::vector<double> Reach(const Robot& robot, std::vector<double> joints,
       before.push_back(robot.links[k]);
       angles.push_back(joints[k]);
     }
-    const Eigen::VectorXd turn = jacobian.completeOrthogonalDecomposition().solve(apart);
+    const Eigen::VectorXd turn = LeastSquares(jacobian, apart);
     const double length = std::min(1.0, 0.3 / turn.norm());
     for (size_t k = 0; k < joints.size(); ++k) joints[k] += length * turn[static_cast<Eigen::Index>(k)];
   }

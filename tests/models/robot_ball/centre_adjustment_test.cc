@@ -1,9 +1,9 @@
 // Ball centres adjusted to the CMM's distances and angles.
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include "models/robot_ball/published.h"
 #include "models/robot_ball/simulate.h"
+#include "solver/dense.h"
 #include "solver/random.h"
 
 namespace scancal::robot_ball {
@@ -40,7 +40,7 @@ Matrix3Xd Carried(const Eigen::Isometry3d& pose, const Matrix3Xd& points) {
 // The artifact fitted rigidly: unweighted by Umeyama; weighted by Gauss-Newton over its pose.
 Matrix3Xd RigidFit(const SeenArtifact& scene) {
   Eigen::Isometry3d pose;
-  pose.matrix() = Eigen::umeyama(scene.on_artifact, scene.measured, false);
+  pose = MotionOnto(scene.on_artifact, scene.measured);
   for (int k = 0; k < 20; ++k) {
     const Matrix3Xd fitted = Carried(pose, scene.on_artifact);
     Eigen::MatrixXd J(fitted.size(), 6);
@@ -53,7 +53,7 @@ Matrix3Xd RigidFit(const SeenArtifact& scene) {
       J.middleRows<3>(3 * i) << weight, weight * turn;
       r.segment<3>(3 * i) = weight * (scene.measured.col(i) - fitted.col(i));
     }
-    const Eigen::Matrix<double, 6, 1> step = J.colPivHouseholderQr().solve(r);
+    const Eigen::Matrix<double, 6, 1> step = LeastSquares(J, r);
     pose.translation() += step.head<3>();
     pose.linear() =
         PoseOf((Eigen::Matrix<double, 6, 1>() << Vector3d::Zero(), step.tail<3>()).finished()).linear() * pose.linear();
@@ -68,8 +68,7 @@ TEST(AdjustByDistances, ConvergesToTheRigidFit) {
     const SeenArtifact scene = Seen(balls, 0.035, false, 7);
     const CentreAdjustment adjusted = AdjustByDistances(scene.measured, scene.on_artifact, scene.spreads);
     EXPECT_TRUE(adjusted.converged) << balls;
-    Matrix3Xd rigid =
-        Carried(Eigen::Isometry3d(Eigen::umeyama(scene.on_artifact, scene.measured, false)), scene.on_artifact);
+    Matrix3Xd rigid = Carried(MotionOnto(scene.on_artifact, scene.measured), scene.on_artifact);
     EXPECT_LT(Largest(adjusted.centres - rigid), 1e-11) << balls << " balls, " << adjusted.iterations;
     EXPECT_GT(Largest(adjusted.centres - scene.measured), 0.01);
   }

@@ -55,7 +55,7 @@ TEST_F(RobotPointsTest, CentresAndTheirCovariance) {
       const Model::View& view = data.stations[p / 3].views[p % 3];
       for (size_t k = 0; k < 5; ++k) {
         const Eigen::Vector3d off = view.balls[k].centre - Seen(p, k);
-        squares += off.dot(Covariance(data, view.balls[k]).ldlt().solve(off));
+        squares += off.dot(Covariance(data, view.balls[k]).llt().solve(off));
       }
     }
     EXPECT_NEAR(squares / 90, 1, 4 * std::sqrt(2.0 / 90)) << diameter;  // chi squared of 90 degrees of freedom

@@ -1,7 +1,7 @@
 // The published equations, and the compressed search that must reproduce them.
 #include "models/turntable/search.h"
 #include <gtest/gtest.h>
-#include <Eigen/SVD>
+#include "solver/dense.h"
 #include "solver/random.h"
 #include "tests/models/turntable/scene.h"
 #include "tests/reference/zhao_2021.h"
@@ -95,11 +95,11 @@ TEST(PlaneStorey, OrthogonalRmseIsTheSmallestSingularValue) {
     for (Eigen::Index i = 0; i < rows.rows(); ++i)
       rows.row(i) = System{{M, N}, {}}.Point(points[i].alpha, points[i].y, points[i].z).transpose();
     const Eigen::MatrixXd centred = rows.rowwise() - rows.colwise().mean();
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(centred, Eigen::ComputeThinV);
-    const double expected = svd.singularValues()[2] / std::sqrt(static_cast<double>(rows.rows()));
+    const Svd svd = SvdOf(centred);
+    const double expected = svd.values[2] / std::sqrt(static_cast<double>(rows.rows()));
     EXPECT_NEAR(storey.Rmse(M, N, PlaneFit::kOrthogonal), expected, 1e-9 * expected);
     const auto [normal, distance] = storey.FitPlane(M, N);
-    EXPECT_NEAR(std::abs(normal.dot(svd.matrixV().col(2))), 1, 1e-9);
+    EXPECT_NEAR(std::abs(normal.dot(svd.v.col(2))), 1, 1e-9);
     EXPECT_NEAR(distance, std::abs(normal.dot(rows.colwise().mean())), 1e-9);
   }
 }

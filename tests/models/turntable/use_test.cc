@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include "solver/dense.h"
 #include "solver/random.h"
 #include "tests/models/turntable/calibrated.h"
 
@@ -37,7 +38,8 @@ TEST(PointUncertainty, EqualsItsMonteCarlo) {
   JointCovariance joint = JointOf(calibration);
   joint.Renew("expansion");
   ASSERT_EQ(joint.names.size(), 2 + kConsidered.size());
-  const Eigen::MatrixXd factor = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(joint.matrix).operatorSqrt();
+  const SymmetricEigen eigen = EigenOf(joint.matrix);
+  const Eigen::MatrixXd factor = eigen.vectors * eigen.values.cwiseMax(0).cwiseSqrt().asDiagonal();
   const Quantities quantities = ModelThatConsiders({}).quantities();
   std::vector<double> nominal = NoErrors();
   nominal[Model::kM] = calibration.Find("M")->value;
@@ -95,7 +97,7 @@ TEST(PointUncertainty, EqualsTheScatterOfRepeatedCalibrations) {
                           error = there.position - b;
     scatter += error.array().square() / kTrials;
     stated += there.uncertainty.covariance.diagonal().array() / kTrials;
-    normalised += error.dot(there.uncertainty.covariance.ldlt().solve(error)) / 3 / kTrials;
+    normalised += error.dot(there.uncertainty.covariance.llt().solve(error)) / 3 / kTrials;
     const PropagatedDistance distance = points.Between(here, there);
     of_distance += std::pow(distance.value - (b - a).norm(), 2) / kTrials;
     stated_distance += distance.uncertainty.covariance(0, 0) / kTrials;

@@ -29,7 +29,7 @@ if PANDA.exists():
 else:
     print(f"NO DATA: {PANDA} is not there; the page of a ball on a flange was not looked at", file=sys.stderr)
 
-PRINTED = ["sample", "robot", "named_robot"]  # a PDF takes its time
+PRINTED = ["sample", "named_robot"]  # a PDF takes its time, that of a robot most
 LANGUAGES = {"named": ["en"], "named_robot": ["en"], "many_targets": ["en"], "many_stations": ["en"]}  # else both
 
 _folder = tempfile.TemporaryDirectory(prefix="scancal_page_")

@@ -8,7 +8,7 @@ from pictures import broken_images, broken_svgs
 
 class BytesTest(unittest.TestCase):
     def test_the_same_calibration_gives_the_same_bytes(self):
-        for scene, printed in [("sample", False), ("robot", True)]:  # a PDF takes its time
+        for scene, printed in [("sample", True), ("robot", False)]:  # a PDF takes its time
             html, pdf = pages.folder() / "again.html", pages.folder() / "again.pdf"
             words = pages.report(pages.calibration(scene), f"--out={html}", *[f"--pdf={pdf}"] * printed,
                                  PYTHONHASHSEED="2", TZ="Asia/Tokyo", SOURCE_DATE_EPOCH="7")
