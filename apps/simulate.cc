@@ -1,13 +1,16 @@
 // scancal simulate
 #include "models/turntable/simulate.h"
 #include <gflags/gflags.h>
+#include <algorithm>
 #include <cstdio>
+#include <string_view>
 #include "apps/command.h"
 #include "io/units.h"
 #include "models/robot_ball/simulate.h"
+#include "models/robot_profiler/simulate.h"
 
 DECLARE_string(out);
-DEFINE_string(model, "turntable", "what to simulate: turntable or robot-ball");
+DEFINE_string(model, "turntable", "what to simulate: turntable, robot-ball or robot-profiler");
 DEFINE_bool(declare, false, "write what was simulated to dataset.yaml as influences");
 DEFINE_uint64(seed, 1, "of all random numbers: the same seed gives the same files");
 
@@ -39,10 +42,10 @@ DEFINE_double(profile_offset, 0, "turntable: standard deviation of an error of d
 DEFINE_double(profile_correlation, 0, "turntable: of that between neighbouring profiles");
 DEFINE_int32(placements, 3, "turntable: placements of the plate");
 DEFINE_int32(profiles, 200, "turntable: profiles per placement");
-DEFINE_int32(points, 200, "turntable: points per profile");
+DEFINE_int32(points, 200, "turntable, robot-profiler: points per profile");
 DEFINE_double(sweep, 30, "turntable: sweep of the table, deg");
 DEFINE_double(line_length, 200, "turntable: length of the laser line, mm");
-DEFINE_double(noise, 0.05, "turntable: standard deviation along depth, mm");
+DEFINE_double(noise, 0.05, "turntable, robot-profiler: standard deviation along depth, mm");
 DEFINE_double(line_correlation, 1,
               "turntable: integrated correlation length of the noise along the line, points; 1 is white");
 DEFINE_double(encoder_jitter, 0, "turntable: standard deviation of the angle, one error a profile, deg");
@@ -57,12 +60,14 @@ DEFINE_double(search_width_M, 20, "turntable: width of the search interval of M,
 DEFINE_double(search_width_N, 30, "turntable: width of the search interval of N, mm");
 DEFINE_string(format, "csv", "turntable: csv (angles to 1e-6 deg, lengths to 0.1 um) or npy (every digit)");
 
+DEFINE_int32(planes, 8, "robot-profiler: planes");
 DEFINE_int32(stations, 8, "robot-ball: stations of the artifact");
-DEFINE_int32(poses, 8, "robot-ball: poses at each station");
+DEFINE_int32(poses, 8, "robot-ball, robot-profiler: poses at each station, on each plane");
 DEFINE_int32(translations, 6, "robot-ball: poses at the first station besides, that only translate");
 DEFINE_string(configuration, "spatial", "robot-ball: how the poses of a station differ: spatial, planar or collinear");
 DEFINE_double(ball_noise, 0.035, "robot-ball: standard deviation of a ball centre, mm per axis");
-DEFINE_double(repeatability, 0.04, "robot-ball: standard deviation of the flange's position, one a pose, mm per axis");
+DEFINE_double(repeatability, 0.04,
+              "robot-ball, robot-profiler: standard deviation of the flange's position, one a pose, mm per axis");
 DEFINE_double(u_artifact, 0.001, "robot-ball: standard uncertainty of the artifact's centres, mm per axis");
 DEFINE_int32(check_positions, 10, "robot-ball: positions of a two-ball scale that takes no part in the calibration");
 
@@ -154,6 +159,21 @@ int RunRobot() {
   return kTrusted;
 }
 
+int RunProfiler() {
+  robot_profiler::Scene scene;
+  scene.planes = FLAGS_planes;
+  scene.poses = FLAGS_poses;
+  scene.points = FLAGS_points;
+  scene.noise = FLAGS_noise;
+  scene.repeatability = FLAGS_repeatability;
+  scene.seed = scene.noise_seed = FLAGS_seed;
+  const Result<void> written = robot_profiler::WriteSimulated(scene, FLAGS_declare, FLAGS_out);
+  if (!written.ok()) return Complain(written.error().message);
+  std::printf("wrote %s: %d planes x %d poses x %d points, seed %llu; truth.json holds the truth\n", FLAGS_out.c_str(),
+              scene.planes, scene.poses, scene.points, static_cast<unsigned long long>(scene.seed));
+  return kTrusted;
+}
+
 struct Simulator {
   const char* model;               // as in dataset.yaml
   std::vector<CommandFlag> flags;  // its own, in the order of the help; out, seed and declare belong to all
@@ -180,31 +200,36 @@ std::vector<Simulator> Simulators() {
             {"repeatability"},
             {"u_artifact"},
             {"check_positions"}},
-           &RunRobot}};
+           &RunRobot},
+          {"robot-profiler", {{"planes"}, {"poses"}, {"points"}, {"noise"}, {"repeatability"}}, &RunProfiler}};
+}
+
+bool Has(const std::vector<CommandFlag>& flags, std::string_view name) {
+  return std::any_of(flags.begin(), flags.end(), [&](const CommandFlag& flag) { return flag.name == name; });
 }
 
 std::vector<CommandFlag> Flags() {
   std::vector<CommandFlag> flags = {{"model"}, {"out", "folder of the data set to write"}, {"seed"}, {"declare"}};
   for (const Simulator& simulator : Simulators())
-    flags.insert(flags.end(), simulator.flags.begin(), simulator.flags.end());
+    for (const CommandFlag& flag : simulator.flags)
+      if (!Has(flags, flag.name)) flags.push_back(flag);
   return flags;
 }
 
 int RunSimulate(const std::vector<std::string>& arguments) {
   if (!arguments.empty()) return Complain("simulate takes no argument; the folder is given by --out");
   if (FLAGS_out.empty()) return Complain("--out: expected the folder to write");
-  int (*run)() = nullptr;
-  for (const Simulator& simulator : Simulators()) {
-    if (FLAGS_model == simulator.model) {
-      run = simulator.run;
-      continue;
-    }
-    for (const CommandFlag& flag : simulator.flags)
-      if (!gflags::GetCommandLineFlagInfoOrDie(flag.name).is_default)
-        return Complain(std::string("--") + flag.name + " belongs to --model=" + simulator.model +
+  const std::vector<Simulator> simulators = Simulators();
+  const auto chosen = std::find_if(simulators.begin(), simulators.end(),
+                                   [](const Simulator& each) { return FLAGS_model == each.model; });
+  if (chosen == simulators.end())
+    return Complain("--model: found \"" + FLAGS_model + "\", expected turntable, robot-ball or robot-profiler");
+  for (const Simulator& other : simulators)
+    for (const CommandFlag& flag : other.flags)
+      if (!Has(chosen->flags, flag.name) && !gflags::GetCommandLineFlagInfoOrDie(flag.name).is_default)
+        return Complain(std::string("--") + flag.name + " belongs to --model=" + other.model +
                         ", found --model=" + FLAGS_model);
-  }
-  return run ? run() : Complain("--model: found \"" + FLAGS_model + "\", expected turntable or robot-ball");
+  return chosen->run();
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 #include "models/models.h"
 #include "models/flange_ball/scanner.h"
 #include "models/robot_ball/scanner.h"
+#include "models/robot_profiler/scanner.h"
 #include "models/turntable/scanner.h"
 
 namespace scancal {
 namespace {
 
-constexpr ScannerKind kKinds[] = {turntable::kKind, robot_ball::kKind, robot_ball::kTrackerKind, flange_ball::kKind};
+constexpr ScannerKind kKinds[] = {turntable::kKind, robot_ball::kKind, robot_ball::kTrackerKind, flange_ball::kKind,
+                                  robot_profiler::kKind};
 
 }  // namespace
 

@@ -10,8 +10,8 @@ namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-// Whether the hand-eye's turn is told by a vector longer than half a turn. One with a prior, or held, is told as
-// declared.
+}  // namespace
+
 bool IsBeyondHalfATurn(const Solution& solution) {
   const std::vector<double> values = Values(solution.problem, solution.fit.estimate, 0);
   for (int k = Model::kHandEye + 3; k < Model::kHandEye + 6; ++k) {
@@ -21,7 +21,6 @@ bool IsBeyondHalfATurn(const Solution& solution) {
   return Eigen::Vector3d::Map(&values[Model::kHandEye + 3]).norm() > std::numbers::pi;
 }
 
-// The same turn, told by the vector of less than half a turn.
 Estimate WithinHalfATurn(const Solution& solution) {
   Estimate estimate = solution.fit.estimate;
   for (size_t t = 0; t < estimate.targets.size(); ++t) {
@@ -32,8 +31,6 @@ Estimate WithinHalfATurn(const Solution& solution) {
   }
   return estimate;
 }
-
-}  // namespace
 
 Kinematics KinematicsOf(const std::vector<double>& values, size_t joints) {
   const auto numbers = kLinkNumbers * static_cast<Eigen::Index>(joints);

@@ -17,6 +17,11 @@ struct JointFit {
   Eigen::Isometry3d BaseFromArtifact(size_t station) const;
 };
 
+// Whether the hand-eye's turn is told by a vector longer than half a turn, and the same turn told by one that is
+// shorter: of any model whose first six quantities are the hand-eye. One with a prior, or held, is told as declared.
+bool IsBeyondHalfATurn(const Solution& solution);
+Estimate WithinHalfATurn(const Solution& solution);
+
 // Generalised least squares of all balls of all poses at once: rows are whitened per pose with V = blockdiag(balls) +
 // sigma_r^2 1 1' (x) I3, because repeatability is common to all balls of a pose. sigma_r and the noise of the balls are
 // as declared, or restricted maximum likelihood. model: carries roles, priors and the values of the links, estimated or

@@ -5,7 +5,7 @@ import numpy as np
 
 from calibration import Calibration, Complaint
 
-MODELS = ["turntable", "robot-ball", "flange-ball"]
+MODELS = ["turntable", "robot-ball", "robot-tracker", "robot-profiler", "flange-ball"]
 ROUNDING = 1e-6  # of a number: files are written to 17 digits
 
 

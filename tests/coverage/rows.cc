@@ -54,9 +54,13 @@ class Scenes {
     return row;
   }
 
-  // Estimated, as sweeps there and back tell it.
-  Row DriftBothWays() const {
+  // Estimated, as sweeps there and back tell it. What they do not tell, whether it goes on from scan to scan, widens
+  // the intervals unless it is declared.
+  Row DriftBothWays(bool begins_anew) const {
     Row row{"drift 0.2 mm over sweeps there and back", base_};
+    if (begins_anew) row.name += ", drift: 0";
+    row.begins_anew = begins_anew;
+    row.most = begins_anew ? 0.97 : 1;
     row.scene.back = true;
     row.scene.drift_sweep = 0.2;
     return row;
@@ -146,7 +150,8 @@ std::vector<Row> Rows(double sweep_deg) {
           of.LineCorrelation(40),
           of.LineCorrelation(130),
           of.All(),
-          of.DriftBothWays(),
+          of.DriftBothWays(true),
+          of.DriftBothWays(false),
           of.Declared("drift 50 um over each sweep, declared", {Model::kDriftSweep}, 50 * kMicron),
           of.Declared("lens: linearity_3, lens_z2, lens_yz2 of 10 um, declared",
                       {Model::kLinearity3, Model::kLensZ2, Model::kLensYZ2}, 10 * kMicron),

@@ -14,6 +14,7 @@ struct Row {
   double declared_form = 0;                                 // mm rms
   std::function<void(Random*, turntable::Scene*)> draw{};   // what is another in every data set, besides its noise
   std::function<void(turntable::Model*)> declare{};         // further influences
+  bool begins_anew = false;                                 // the data set says that no drift goes on between scans
   double least = 0.93, most = 0.97;                         // wanted share of data sets that hold M, and N
   double widest = std::numeric_limits<double>::infinity();  // wanted median width against the oracle
 };

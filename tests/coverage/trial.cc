@@ -52,6 +52,7 @@ Trial Try(const Row& row, const Oracle& oracle, uint64_t seed) {
   const std::vector<SimulatedPlacement> placements = Simulate(scene);
   Declaration declaration;
   declaration.search = scene.search;
+  declaration.drift_declared = row.begins_anew;
   Trial trial;
   const auto scanner = Compress(declaration, Declared(row), CleanScans(placements));
   if (!scanner.ok()) {

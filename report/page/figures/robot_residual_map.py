@@ -54,7 +54,7 @@ def _lengths(found: list[poses.Station], balls: list[str], starts: np.ndarray) -
 
 def _balls(c: Calibration) -> list[str]:
     """In the order of the artifact; none where there is but one on the flange."""
-    if c["model"] != "robot-ball":
+    if c["model"] not in ("robot-ball", "robot-tracker"):
         return []
     names = {name for each in poses.stations(c) for name in each.ball_of}
     outline = [name for each in (c.get("scene") or {}).get("targets") or []

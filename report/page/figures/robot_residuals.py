@@ -63,7 +63,7 @@ def caption(c: Calibration, t) -> dict[str, str]:
 
 
 def _kind(c: Calibration) -> str:
-    return "robot" if c["model"] == "robot-ball" else "flange"
+    return "flange" if c["model"] == "flange-ball" else "robot"
 
 
 def _with_residuals(c: Calibration) -> list[poses.Station]:

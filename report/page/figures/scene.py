@@ -41,7 +41,8 @@ def draw(c: Calibration, t) -> style.Figure | None:
 
 def caption(c: Calibration, t) -> dict[str, str]:
     number = len(scene.standings(c))
-    kind = "turntable" if c.is_turntable else "robot" if c["model"] == "robot-ball" else "flange"
+    kind = {"turntable": "turntable", "robot-ball": "robot", "robot-tracker": "tracker", "robot-profiler": "carried",
+            "flange-ball": "flange"}[c["model"]]
     words = ["named"] * (number > MOST_NAMES) + ["drawn"] * (number > MOST_TARGETS)
     sentences = [t(f"figure.scene.{word}", shown=MOST_TARGETS, number=number) for word in words]
     return {"what": t(f"figure.scene.seen_{kind}"), "left_out": "".join(" " + each for each in sentences)}
@@ -121,7 +122,7 @@ def _names(axes, project, standing: list[scene.Standing], c: Calibration, t) -> 
     texts.insert(0, t("figure.scene.axis" if c.is_turntable else "figure.scene.base"))
     eyes = np.vstack([project(each.eyes) for each in standing])
     if len(eyes):
-        kind = {"turntable": "profiler", "robot-ball": "scanner"}.get(c["model"], "flange")
+        kind = {"turntable": "profiler", "robot-ball": "scanner", "robot-profiler": "profiler"}.get(c["model"], "flange")
         points.append(eyes[np.argmin(np.hypot(*eyes.T))])
         texts.append(t(f"figure.scene.{kind}"))
     number = len(texts)

@@ -52,7 +52,7 @@ TEST_P(CoverageOfMore, StatedIntervalsHoldTheTruth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, CoverageOfMore,
-                         ::testing::Values("drift 0.2 mm over sweeps there and back",
+                         ::testing::Values("drift 0.2 mm over sweeps there and back, drift: 0",
                                            "lens: linearity_3, lens_z2, lens_yz2 of 10 um, declared",
                                            "profiles err by 20 um, neighbours correlated 0.8",
                                            "angle in steps of 0.2 deg", "form 5 um, one plate, not declared"));

@@ -9,6 +9,7 @@ import unittest
 
 import pages
 import paths
+from consistency import MODELS
 from language import LANGUAGES, TEXTS, Language
 from synthetic import calibration, said
 
@@ -46,6 +47,13 @@ class TextsTest(unittest.TestCase):
             self.assertEqual(sorted(set(english) ^ set(other)), [], code)
             for key, text in english.items():
                 self.assertEqual(places(text), places(other[key]), f"{code}: {key}")
+
+    def test_every_model_has_its_words(self):
+        of_balls = {key for key in texts("en") if "robot-ball" in key}
+        self.assertGreater(len(of_balls), 10)
+        for model in MODELS:
+            missing = {key.replace("robot-ball", model) for key in of_balls} - set(texts("en"))
+            self.assertEqual({key for key in missing if model != "turntable" or "workspace" not in key}, set(), model)
 
     def test_german_is_german(self):
         """Whole phrases that stand in both languages were forgotten."""
