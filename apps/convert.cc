@@ -16,7 +16,8 @@ DEFINE_string(
 namespace scancal {
 namespace {
 
-Result<int> Converted(const std::string& in, const std::string& out) {
+Result<int> Converted(const std::string& argument, const std::string& out) {
+  const std::string in = argument == "-" ? "/dev/stdin" : argument;
   YamlMap declared;
   if (!FLAGS_as.empty()) {
     SCANCAL_ASSIGN_OR_RETURN(declared, YamlMap::Parse(FLAGS_as, "--as"));
@@ -24,6 +25,9 @@ Result<int> Converted(const std::string& in, const std::string& out) {
   const Units units = declared.Has("units") ? ReadUnits(declared.Map("units")) : Units();
   ScanFormat format = turntable::ScanFormatOf(in, units);
   turntable::ReadScanFormat(declared, "", &format);
+  const std::string depth = declared.Has("depth") ? declared.Text("depth") : "";
+  if (!depth.empty() && depth != "away" && depth != "towards")
+    declared.Fail("depth", "expected away or towards: which way the sensor's depth grows");
   SCANCAL_RETURN_IF_ERROR(declared.Finish());
   std::error_code ignored;
   if (std::filesystem::equivalent(in, out, ignored)) return Error{out + ": that is the file to read, expected another"};
@@ -39,6 +43,8 @@ Result<int> Converted(const std::string& in, const std::string& out) {
   if (const std::string found = reader->Describe(); !found.empty()) fmt::print("{}: {}\n", in, found);
   fmt::print("wrote {} points to {}, {} missing left out; columns: [{}]\n", writer->points(), out, reader->missing(),
              Listed(writer->names()));
+  if (depth == "towards" || (depth.empty() && reader->gives_heights()))
+    fmt::print("depth is as it was: a data set of {} declares depth: towards\n", out);
   return kTrusted;
 }
 

@@ -1,12 +1,15 @@
 // scancal: calibration of 3D scanners from geometric targets.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 #include <malloc.h>
+#include <unistd.h>
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include "apps/command.h"
+#include "io/file_kind.h"
 
 DECLARE_bool(help);
 DECLARE_bool(version);
@@ -64,6 +67,8 @@ std::string ShellQuoted(const std::string& argument) {
 }
 
 int Main(int argc, char** argv) {
+  // Where the standard input is closed the next file to be opened would become it.
+  if (::fcntl(STDIN_FILENO, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) < 0) return kBadInput;
   for (int i = 0; i < argc; ++i) command_line += (i ? " " : "") + ShellQuoted(argv[i]);
   // A fit takes matrices of the same sizes again and again: kept here, or the system clears them anew every time.
   constexpr int kKept = 64 << 20;
@@ -74,7 +79,8 @@ int Main(int argc, char** argv) {
   google::InitGoogleLogging(argv[0]);
   gflags::ParseCommandLineNonHelpFlags(&argc, &argv, true);
   if (FLAGS_version) {
-    std::printf("scancal %s\n", SCANCAL_VERSION);
+    const std::string also = OptionalFileKinds();
+    std::printf("scancal %s%s%s\n", SCANCAL_VERSION, also.empty() ? "" : ", reads also ", also.c_str());
     return kTrusted;
   }
   if (argc < 2) {

@@ -122,6 +122,8 @@ Result<CloudHead> ReadPlyHead(CloudBytes* bytes) {
     if (!taken) return Error{bytes->name() + ": the file is cut off in its header"};
     const std::string line(*taken);
     const std::vector<std::string> words = SplitCells(line, ' ');
+    if (bytes->line() == 1 && words[0] != "ply")
+      return Error{bytes->name() + ":1: found other data, expected the line ply that a PLY begins with"};
     if (words[0].empty() || words[0] == "comment" || words[0] == "obj_info" || words[0] == "ply") continue;
     if (words[0] == "end_header") break;
     if (words[0] == "format") {
@@ -150,7 +152,9 @@ Result<CloudHead> ReadPcdHead(CloudBytes* bytes) {
   int64_t width = 0, height = 1, points = -1;
   for (;;) {
     SCANCAL_ASSIGN_OR_RETURN(const auto taken, bytes->Line());
-    if (!taken) return Error{bytes->name() + ": the file is cut off in its header"};
+    if (!taken)
+      return Error{bytes->name() + ": found " + (head.fields.empty() ? "no line FIELDS" : "no line DATA") +
+                   ", expected the header of a PCD; it is cut off, or another kind of file"};
     const std::string line(*taken);
     const std::vector<std::string> words = SplitCells(line, ' ');
     if (words[0].empty() || words[0].starts_with('#')) continue;

@@ -282,6 +282,24 @@ Result<size_t> DecodedFile::Read(char* buffer, size_t size) {
   return given;
 }
 
+Result<void> DecodedFile::Skip(int64_t bytes) {
+  std::vector<char> passed(kUnpackedPiece);
+  while (bytes > 0) {
+    if (sized() && impl_->start.empty()) return impl_->file.Skip(bytes);
+    // The rest of what was read already, then piece by piece.
+    const size_t most = sized() ? impl_->start.size() : passed.size();
+    const auto size = static_cast<size_t>(std::min<int64_t>(bytes, static_cast<int64_t>(most)));
+    SCANCAL_ASSIGN_OR_RETURN(const size_t count, Read(passed.data(), size));
+    if (count < size) return {};  // who reads on will see that it ended
+    bytes -= static_cast<int64_t>(count);
+  }
+  return {};
+}
+
+std::string_view DecodedFile::start() const {
+  return impl_->is_packed() || impl_->utf16 != Utf16::kNo ? impl_->pending : impl_->start;
+}
+bool DecodedFile::sized() const { return impl_->file.regular() && !impl_->is_packed() && impl_->utf16 == Utf16::kNo; }
 const std::string& DecodedFile::name() const { return impl_->file.name(); }
 int64_t DecodedFile::size() const { return impl_->file.size(); }
 int64_t DecodedFile::bytes_read() const { return impl_->taken; }

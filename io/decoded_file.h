@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include "io/input_file.h"
 #include "io/result.h"
 
@@ -21,6 +22,10 @@ class DecodedFile {
   ~DecodedFile();
 
   Result<size_t> Read(char* buffer, size_t size);  // fills the buffer; fewer bytes only at the end
+  Result<void> Skip(int64_t bytes);
+  // The first bytes, at most 512, before any is read.
+  std::string_view start() const;
+  bool sized() const;  // size() is that of what is read: a regular file, not packed
   const std::string& name() const;
   int64_t size() const;                 // of the file, bytes
   int64_t bytes_read() const;           // of the file, so far

@@ -70,6 +70,10 @@ TextLines::TextLines(DecodedFile file)
 
 Result<TextLines> TextLines::Open(const std::filesystem::path& path) {
   SCANCAL_ASSIGN_OR_RETURN(DecodedFile file, DecodedFile::Open(path));
+  return Open(std::move(file));
+}
+
+Result<TextLines> TextLines::Open(DecodedFile file) {
   TextLines lines(std::move(file));
   SCANCAL_RETURN_IF_ERROR(lines.ReadMore());
   SCANCAL_RETURN_IF_ERROR(lines.CheckEncoding());
@@ -137,6 +141,11 @@ Result<DelimitedText> DelimitedText::Open(const std::filesystem::path& path) {
   return DelimitedText(std::move(text));
 }
 
+Result<DelimitedText> DelimitedText::Open(DecodedFile file) {
+  SCANCAL_ASSIGN_OR_RETURN(TextLines text, TextLines::Open(std::move(file)));
+  return DelimitedText(std::move(text));
+}
+
 // The lines that are in memory, enough of them to tell how the file is written.
 std::vector<std::string_view> DelimitedText::FirstLines() const {
   constexpr size_t kMost = 1500;
@@ -200,13 +209,17 @@ std::string DelimitedText::Describe() const {
 }
 
 // The row in hand is not one that KeepWhere keeps.
-bool DelimitedText::IsUnwanted() const {
-  if (where_.empty()) return false;
+bool DelimitedText::IsUnwanted() {
   const std::vector<std::string> cells = SplitCells(Line());
-  return std::any_of(where_.begin(), where_.end(), [&](const auto& each) {
-    if (each.first >= cells.size()) return true;
-    return !CellIs(cells[each.first], each.second, head_.dialect);
+  const auto cell = [&](const auto& each) { return each.first < cells.size() ? cells[each.first] : std::string(); };
+  const bool unwanted = std::any_of(where_.begin(), where_.end(), [&](const auto& each) {
+    return each.first >= cells.size() || !CellIs(cell(each), each.second, head_.dialect);
   });
+  if (!unwanted || !first_unwanted_.empty()) return unwanted;
+  std::vector<std::string> found;
+  for (const auto& each : where_) found.push_back(Quoted(head_.dialect.Original(cell(each))));
+  first_unwanted_ = Listed(found);
+  return true;
 }
 
 bool DelimitedText::IsHeadAgain() const {

@@ -21,6 +21,7 @@ namespace scancal {
 class TextLines {
  public:
   static Result<TextLines> Open(const std::filesystem::path& path);
+  static Result<TextLines> Open(DecodedFile file);
   // Makes sure that there is a line; false at the end of the file. Invalidates pointers into the old block.
   Result<bool> Fill();
   const char* begin() const { return begin_; }  // the next line
@@ -77,6 +78,7 @@ enum class CellCount {
 class DelimitedText {
  public:
   static Result<DelimitedText> Open(const std::filesystem::path& path);
+  static Result<DelimitedText> Open(DecodedFile file);
 
   // From the first line on: finds the head of the file (FindHead, else FindNumbers) and takes it.
   // What follows reads as commas between cells and decimal points, whatever the file has.
@@ -93,6 +95,8 @@ class DelimitedText {
   // Texts that stand for a number that is missing; only rows with these values in these columns.
   void TreatAsMissing(std::vector<std::string> texts) { missing_ = std::move(texts); }
   void KeepWhere(std::vector<std::pair<size_t, std::string>> where) { where_ = std::move(where); }
+  // What the first row that KeepWhere leaves out has in these columns; empty: there is none.
+  const std::string& first_unwanted() const { return first_unwanted_; }
   // "gzip, cells between semicolons, decimal commas, names in line 15"; empty: a plain file.
   std::string Describe() const;
 
@@ -128,7 +132,7 @@ class DelimitedText {
   std::vector<std::string_view> FirstLines() const;
   void TakeLines(const TextHead& head);
   const char* TakeCells(const char* at, const Column** wrong);
-  bool IsUnwanted() const;
+  bool IsUnwanted();
   bool IsHeadAgain() const;
   const char* ReadCell(const char* at, const char* end, Cells cells, ColumnParser& parser, double* number) const;
   const char* ReadCellCarefully(const char* at, Cells cells, double* number) const;
@@ -139,6 +143,7 @@ class DelimitedText {
   std::vector<std::string> header_;
   CellCount count_ = CellCount::kLast;
   TextHead head_;
+  std::string first_unwanted_;
   std::string names_, units_;  // their lines, translated: a file that was appended to has them again
   std::vector<std::string> missing_;
   std::vector<std::pair<size_t, std::string>> where_;

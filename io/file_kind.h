@@ -18,18 +18,22 @@ struct FileKind {
   Result<std::unique_ptr<ScanReader>> (*open)(const ScanFormat& format);
 };
 
-extern const FileKind kGocator, kLjV, kLjX, kHeightImage, kPly, kPcd;
+extern const FileKind kGocator, kLjV, kLjX, kHeightImage, kPly, kPcd, kRos1, kRos2;
 
-// As `format:` names it, or as its content says; nullptr: none of them, a text or .npy with a column for each quantity.
-const FileKind* FindFileKind(const ScanFormat& format);
+// As its content says, or where that does not tell as `format:` names it; nullptr: none of them, a text or .npy with a
+// column for each quantity. An error where the content is of another kind than `format:` names.
+Result<const FileKind*> FindFileKind(const ScanFormat& format);
 
 const FileKind* NamedFileKind(std::string_view name);  // nullptr: there is none
 std::vector<std::string> FileKindNames();
-std::string TriedFileKinds();  // "; tried too: Gocator CSV, ..."
+std::string OptionalFileKinds();  // those that this program was built with: "ROS 2 bags, TIFF"; or empty
+std::string TriedFileKinds();     // "; tried too: Gocator CSV, ..."
 
-Result<std::string> FirstBytes(const std::filesystem::path& path, size_t most);  // unpacked
+bool IsReadOnce(const std::filesystem::path& path);  // a pipe
+// Unpacked; of a pipe, which cannot be begun again, an error.
+Result<std::string> FirstBytes(const std::filesystem::path& path, size_t most);
 
-bool StartsAsImage(std::string_view start);  // .png or .npy
+bool StartsAsImage(std::string_view start);  // .png, .tif or .npy
 
 // Of the first bytes; empty at their end.
 std::string_view TakeFirstLine(std::string_view* text);

@@ -112,7 +112,8 @@ class GocatorReader : public CsvReader {
         return ReadAttributes(cells);
       }
     }
-    return Error{text_.name() + ": found the sections " + Listed(found) +
+    return Error{text_.name() + ": found " +
+                 (found.empty() ? "none of the sections" : "the sections " + Listed(found)) +
                  " of a Gocator's CSV, expected Profile, RawProfile or Part; export profiles or a surface"};
   }
 
@@ -302,8 +303,12 @@ class GocatorReader : public CsvReader {
   std::optional<std::string> seen_source_;
 };
 
+Result<std::unique_ptr<ScanReader>> OpenGocator(const ScanFormat& format) {
+  return OpenText<GocatorReader>(format, DelimitedText::Open(format.path));
+}
+
 }  // namespace
 
-const FileKind kGocator = {"gocator", "Gocator CSV", &IsGocator, &OpenText<GocatorReader>};
+const FileKind kGocator = {"gocator", "Gocator CSV", &IsGocator, &OpenGocator};
 
 }  // namespace scancal

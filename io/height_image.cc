@@ -1,4 +1,4 @@
-// Images of heights: a profile a row, in grey of 16 bits (.png) or a two-dimensional array (.npy). What a pixel is, is
+// Images of heights: a profile a row, in grey (.png, .tif) or a two-dimensional array (.npy). What a pixel is, is
 // declared: scale v + offset across the line, start + step k along it.
 #include <png.h>
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <vector>
 #include "io/decoded_file.h"
 #include "io/file_kind.h"
+#include "io/image_rows.h"
 #include "io/message.h"
 #include "io/npy.h"
 
@@ -18,18 +19,6 @@ namespace scancal {
 namespace {
 
 constexpr std::string_view kPngStart = "\x89PNG\r\n\x1a\n";
-
-// Row by row, as its numbers stand there.
-class ImageRows {
- public:
-  virtual ~ImageRows() = default;
-  virtual Result<void> Read(std::vector<double>* row) = 0;
-  virtual int64_t bytes_read() const = 0;
-  virtual int64_t bytes_total() const = 0;
-  std::string title;
-  bool whole = true;  // numbers: they count something
-  int64_t height = 0, width = 0;
-};
 
 // libpng jumps over frames: those between it and setjmp hold nothing that wants to be destroyed.
 class PngRows : public ImageRows {
@@ -116,50 +105,41 @@ class PngRows : public ImageRows {
 
 class NpyRows : public ImageRows {
  public:
-  explicit NpyRows(InputFile file) : file_(std::move(file)) {}
-  int64_t bytes_read() const override { return read_; }
+  explicit NpyRows(DecodedFile file) : file_(std::move(file)) {}
+  int64_t bytes_read() const override { return file_.bytes_read(); }
   int64_t bytes_total() const override { return file_.size(); }
 
   Result<void> ReadHeader() {
-    if (!file_.regular()) return Error{file_.name() + ": found a pipe or a device, expected a .npy file"};
     SCANCAL_ASSIGN_OR_RETURN(header_, ReadNpyHeader(&file_, true));
     SCANCAL_RETURN_IF_ERROR(CheckNpySize(header_, file_));
     height = header_.rows;
     width = header_.columns;
     whole = header_.type[1] != 'f';
     title = ".npy of " + header_.type;
-    read_ = header_.bytes;
     bytes_.resize(static_cast<size_t>(header_.row_bytes()));
     return {};
   }
 
   Result<void> Read(std::vector<double>* row) override {
     SCANCAL_ASSIGN_OR_RETURN(const size_t count, file_.Read(bytes_.data(), bytes_.size()));
-    if (count < bytes_.size()) return Error{file_.name() + ": the file became shorter while it was read"};
-    read_ += static_cast<int64_t>(count);
+    if (count < bytes_.size())
+      return Error{file_.name() + ": found the end in row " + std::to_string(row_ + 1) + ", expected " +
+                   std::to_string(height) + " rows; the file is cut off"};
+    ++row_;
     row->clear();
-    if (header_.type == "<f8") Append<double>(row);
-    else if (header_.type == "<f4") Append<float>(row);
-    else if (header_.type == "<u2") Append<uint16_t>(row);
-    else if (header_.type == "<i2") Append<int16_t>(row);
-    else Append<int32_t>(row);
+    if (header_.type == "<f8") AppendNumbers<double>(bytes_, row);
+    else if (header_.type == "<f4") AppendNumbers<float>(bytes_, row);
+    else if (header_.type == "<u2") AppendNumbers<uint16_t>(bytes_, row);
+    else if (header_.type == "<i2") AppendNumbers<int16_t>(bytes_, row);
+    else AppendNumbers<int32_t>(bytes_, row);
     return {};
   }
 
  private:
-  template <class Number>
-  void Append(std::vector<double>* row) const {
-    for (size_t at = 0; at + sizeof(Number) <= bytes_.size(); at += sizeof(Number)) {
-      Number number = 0;
-      std::memcpy(&number, bytes_.data() + at, sizeof number);
-      row->push_back(static_cast<double>(number));
-    }
-  }
-
-  InputFile file_;
+  DecodedFile file_;
   NpyHeader header_;
-  std::vector<char> bytes_;
-  int64_t read_ = 0;
+  std::string bytes_;
+  int64_t row_ = 0;
 };
 
 class HeightImageReader : public ScanReader {
@@ -224,31 +204,34 @@ class HeightImageReader : public ScanReader {
   std::vector<double> pixels_;
 };
 
-template <class Rows, class File>
-Result<std::unique_ptr<ImageRows>> OpenRows(Result<File> file) {
-  if (!file.ok()) return file.error();
-  auto rows = std::make_unique<Rows>(*std::move(file));
+template <class Rows>
+Result<std::unique_ptr<ImageRows>> OpenRows(const std::filesystem::path& path) {
+  SCANCAL_ASSIGN_OR_RETURN(DecodedFile file, DecodedFile::Open(path));
+  auto rows = std::make_unique<Rows>(std::move(file));
   SCANCAL_RETURN_IF_ERROR(rows->ReadHeader());
   return std::unique_ptr<ImageRows>(std::move(rows));
 }
 
 bool IsHeightImage(std::string_view start, const ScanFormat& format) {
-  return start.starts_with(kPngStart) || (StartsAsImage(start) && format.layout && format.layout->image);
+  return start.starts_with(kPngStart) || StartsAsTiff(start) ||
+         (StartsAsImage(start) && format.layout && format.layout->image);
 }
 
 Result<std::unique_ptr<ScanReader>> OpenHeightImage(const ScanFormat& format) {
   const std::string name = format.path.string();
+  SCANCAL_ASSIGN_OR_RETURN(const std::string start, FirstBytes(format.path, 16));
+  if (!StartsAsImage(start))
+    return Error{name + ": found neither a PNG, a TIFF nor a .npy file, expected an image of heights"};
   if (!format.layout || !format.layout->image)
     return Error{name +
                  ": found an image, expected what its pixels are: layout: {image: y, scale: ..., start: ..., "
                  "step: ...}, with start and step along the line"};
   if (!format.text.where.empty()) return Error{name + ": where: an image has no columns, expected keep: {lines: ...}"};
   SCANCAL_ASSIGN_OR_RETURN(const bool by_profile, AnglesByProfile(format));
-  SCANCAL_ASSIGN_OR_RETURN(const std::string start, FirstBytes(format.path, 16));
-  if (!StartsAsImage(start)) return Error{name + ": found neither a PNG nor a .npy file, expected an image of heights"};
   SCANCAL_ASSIGN_OR_RETURN(std::unique_ptr<ImageRows> rows, start.starts_with(kPngStart)
-                                                                ? OpenRows<PngRows>(DecodedFile::Open(format.path))
-                                                                : OpenRows<NpyRows>(InputFile::Open(format.path)));
+                                                                ? OpenRows<PngRows>(format.path)
+                                                            : StartsAsTiff(start) ? OpenTiff(format.path)
+                                                                                  : OpenRows<NpyRows>(format.path));
   if (rows->whole && !format.layout->scaled)
     return Error{name + ": found whole numbers, expected what one is: layout: {image: ..., scale: ...}, in " +
                  format.units.length};
@@ -257,8 +240,10 @@ Result<std::unique_ptr<ScanReader>> OpenHeightImage(const ScanFormat& format) {
 
 }  // namespace
 
-bool StartsAsImage(std::string_view start) { return start.starts_with(kPngStart) || start.starts_with("\x93NUMPY"); }
+bool StartsAsImage(std::string_view start) {
+  return start.starts_with(kPngStart) || start.starts_with(kNpyStart) || StartsAsTiff(start);
+}
 
-const FileKind kHeightImage = {"image", "images of heights (.png, .npy)", &IsHeightImage, &OpenHeightImage};
+const FileKind kHeightImage = {"image", "images of heights (.png, .tif, .npy)", &IsHeightImage, &OpenHeightImage};
 
 }  // namespace scancal

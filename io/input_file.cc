@@ -70,6 +70,8 @@ Result<InputFile> InputFile::Open(const fs::path& path) {
   struct stat status = {};
   if (::fstat(descriptor, &status) != 0) return CannotOpen(path, errno);
   if (S_ISDIR(status.st_mode)) return Error{path.string() + ": found a folder, expected a file"};
+  if (S_ISCHR(status.st_mode) && path == "/dev/stdin")
+    return Error{"the standard input is closed or a terminal, expected a file or a pipe: scancal ... < left.csv"};
   if (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode) || S_ISSOCK(status.st_mode))
     return Error{path.string() + ": found a device, expected a file"};
   file.regular_ = S_ISREG(status.st_mode);

@@ -44,6 +44,10 @@ bool IsLjV(std::string_view start, const ScanFormat& format) {
 
 // X in the first column, a profile a column; all in whole numbers of 0.01 um.
 Result<std::unique_ptr<ScanReader>> OpenLjV(const ScanFormat& format) {
+  SCANCAL_ASSIGN_OR_RETURN(const std::string start, FirstBytes(format.path, 4096));
+  if (start.find('\t') == std::string::npos && start.find_first_of(",;") != std::string::npos)
+    return Error{format.path.string() +
+                 ": found no tabs, expected profiles of a Keyence LJ-V: whole numbers between tabs, X first"};
   ScanFormat file = format;
   file.units.length_in_mm = kLjVUnit_mm;
   file.text.separator = '\t';

@@ -9,15 +9,13 @@
 #include <tuple>
 #include <utility>
 #include <vector>
-#include "io/input_file.h"
+#include "io/decoded_file.h"
 #include "io/message.h"
 #include "io/number.h"
 #include "io/scan.h"
 
 namespace scancal {
 namespace {
-
-constexpr std::string_view kMagic = "\x93NUMPY";
 
 // What follows 'key': in the dictionary, up to the comma behind it; commas inside brackets belong to it.
 std::string_view ValueOf(std::string_view dictionary, std::string_view key) {
@@ -73,13 +71,13 @@ Result<NpyHeader> ParseDictionary(std::string_view dictionary, const std::string
 
 }  // namespace
 
-Result<NpyHeader> ReadNpyHeader(InputFile* input, bool image) {
-  InputFile& file = *input;
+Result<NpyHeader> ReadNpyHeader(DecodedFile* input, bool image) {
+  DecodedFile& file = *input;
   constexpr size_t kLongestHeader = 65536;
   unsigned char start[12] = {};  // magic, major, minor, length (2 bytes in version 1, 4 bytes later)
   SCANCAL_ASSIGN_OR_RETURN(size_t count, file.Read(reinterpret_cast<char*>(start), 10));
-  const std::string_view magic(reinterpret_cast<const char*>(start), kMagic.size());
-  if (count < 10 || magic != kMagic) {
+  const std::string_view magic(reinterpret_cast<const char*>(start), kNpyStart.size());
+  if (count < 10 || magic != kNpyStart) {
     return Error{file.name() + ": found " + (count == 0 ? "an empty file" : "other data") + ", expected a .npy array"};
   }
   const unsigned major = start[6];
@@ -102,9 +100,13 @@ Result<NpyHeader> ReadNpyHeader(InputFile* input, bool image) {
   return header;
 }
 
-Result<void> CheckNpySize(const NpyHeader& header, const InputFile& file) {
-  constexpr int64_t kMost = int64_t{1} << 56;
-  if (!file.regular() && header.rows <= kMost / std::max<int64_t>(1, header.columns)) return {};  // nobody knows yet
+Result<void> CheckNpySize(const NpyHeader& header, const DecodedFile& file) {
+  constexpr int64_t kMost = int64_t{1} << 56, kWidest = 1'000'000;
+  const bool possible = header.columns <= kWidest && header.rows <= kMost / std::max<int64_t>(1, header.columns);
+  if (!file.sized() && possible) return {};  // nobody knows yet
+  if (!file.sized())
+    return Error{file.name() + ": found a header of " + std::to_string(header.rows) + " rows of " +
+                 std::to_string(header.columns) + " numbers, expected at most a million a row"};
   const int64_t found = file.size() - header.bytes;
   const bool fits = header.columns > 0 && header.columns <= file.size();  // else the product may be too large
   const int64_t row = fits ? header.row_bytes() : 0;
@@ -122,12 +124,13 @@ static_assert(std::endian::native == std::endian::little, "arrays of type '<f8' 
 
 class NpyReader : public ScanReader {
  public:
-  NpyReader(const ScanFormat& format, InputFile file) : format_(format), file_(std::move(file)) {
+  NpyReader(const ScanFormat& format, DecodedFile file) : format_(format), file_(std::move(file)) {
     if (format.lines) std::tie(first_row_, last_row_) = *format.lines;
     if (format.invalid) invalid_ = *format.invalid;
   }
 
   Result<void> ReadHeader();
+  std::string Describe() const override { return file_.wrapping(); }
   Result<bool> Next(ScanBatch* batch) override;
   int64_t bytes_read() const override { return header_.bytes + row_ * row_bytes_; }
   int64_t bytes_total() const override { return header_.bytes + header_.rows * row_bytes_; }
@@ -138,7 +141,7 @@ class NpyReader : public ScanReader {
   Result<void> Append(size_t rows, ScanBatch* batch);
 
   ScanFormat format_;
-  InputFile file_;
+  DecodedFile file_;
   int64_t first_row_ = 1, last_row_ = std::numeric_limits<int64_t>::max();  // wanted, 1-based
   double invalid_ = std::numeric_limits<double>::quiet_NaN();               // equals no number
   NpyHeader header_;
@@ -188,10 +191,12 @@ Result<size_t> NpyReader::ReadRows(size_t most) {
   buffer_.resize(rows * static_cast<size_t>(row_bytes_));
   SCANCAL_ASSIGN_OR_RETURN(const size_t count, file_.Read(buffer_.data(), buffer_.size()));
   if (count < buffer_.size())
-    return Error{
-        file_.name() + ": found the end after row " + std::to_string(row_ + static_cast<int64_t>(count) / row_bytes_) +
-        ", expected " + std::to_string(header_.rows) +
-        " rows: " + (file_.regular() ? "the file became shorter while it was read" : "the pipe was closed early")};
+    return Error{file_.name() + ": found the end after row " +
+                 std::to_string(row_ + static_cast<int64_t>(count) / row_bytes_) + ", expected " +
+                 std::to_string(header_.rows) + " rows: " +
+                 (file_.sized()              ? "the file became shorter while it was read"
+                  : file_.wrapping().empty() ? "the pipe was closed early"
+                                             : "the file was probably cut off before it was packed")};
   return rows;
 }
 
@@ -222,7 +227,7 @@ Result<void> NpyReader::Append(size_t rows, ScanBatch* batch) {
 }  // namespace
 
 std::string MakeNpyHeader(int64_t rows, int64_t columns) {
-  std::string header(kMagic);
+  std::string header(kNpyStart);
   header += {'\x01', '\x00', static_cast<char>(kNpyHeaderSize - 10), '\x00'};
   header += "{'descr': '<f8', 'fortran_order': False, 'shape': (" + std::to_string(rows) + ", " +
             std::to_string(columns) + "), }";
@@ -230,8 +235,7 @@ std::string MakeNpyHeader(int64_t rows, int64_t columns) {
   return header + '\n';
 }
 
-Result<std::unique_ptr<ScanReader>> OpenNpy(const ScanFormat& format) {
-  SCANCAL_ASSIGN_OR_RETURN(InputFile file, InputFile::Open(format.path));
+Result<std::unique_ptr<ScanReader>> OpenNpy(const ScanFormat& format, DecodedFile file) {
   auto reader = std::make_unique<NpyReader>(format, std::move(file));
   SCANCAL_RETURN_IF_ERROR(reader->ReadHeader());
   return std::unique_ptr<ScanReader>(std::move(reader));

@@ -3,10 +3,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include "io/input_file.h"
+#include <string_view>
+#include "io/decoded_file.h"
 #include "io/result.h"
 
 namespace scancal {
+
+inline constexpr std::string_view kNpyStart = "\x93NUMPY";
 
 struct NpyHeader {
   std::string type;  // '<f8', '<f4'; of an image also '<u2', '<i2', '<i4'
@@ -17,9 +20,9 @@ struct NpyHeader {
 
 // From the start of the file; leaves it at the first number. Anything but a two-dimensional array in C order is an
 // error; image: of whole numbers, too.
-Result<NpyHeader> ReadNpyHeader(InputFile* file, bool image = false);
-// That the file, a regular one, has as many bytes as its header says.
-Result<void> CheckNpySize(const NpyHeader& header, const InputFile& file);
+Result<NpyHeader> ReadNpyHeader(DecodedFile* file, bool image = false);
+// That the file has as many bytes as its header says; of a pipe, or packed, only that so many are possible.
+Result<void> CheckNpySize(const NpyHeader& header, const DecodedFile& file);
 
 // Always kNpyHeaderSize bytes, for an array of float64.
 inline constexpr size_t kNpyHeaderSize = 128;

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstring>
 #include <utility>
+#include "io/decoded_file.h"
 #include "io/file_kind.h"
 #include "io/message.h"
+#include "io/npy.h"
 
 namespace scancal {
 namespace {
@@ -181,6 +183,9 @@ void ReadFormat(YamlMap map, const std::filesystem::path& folder, ScanFormat* fo
   }
   ReadColumnNames(map, format);
   ReadTextFormat(map, format);
+  if (map.Has("topic")) format->ros.topic = map.Text("topic");
+  if (map.Has("joint")) format->ros.joint = map.Text("joint");
+  if (map.Has("joint_topic")) format->ros.joint_topic = map.Text("joint_topic");
   if (map.Has("angle")) format->angle = ReadLoggedAngle(map.Map("angle"), folder, format->units);
   if (map.IsNumber("invalid")) {
     format->invalid = map.Number("invalid");
@@ -209,9 +214,16 @@ Result<std::vector<std::pair<size_t, std::string>>> ChooseWhere(const ScanFormat
   return where;
 }
 
-Error NoPoints(const ScanFormat& format, int64_t lines_in_file) {
+Error NoPoints(const ScanFormat& format, int64_t lines_in_file, const std::string& first_unwanted) {
   const std::string name = format.path.string();
   if (lines_in_file == 0) return Error{name + ": no points: the file is empty"};
+  if (!first_unwanted.empty() || (!format.text.where.empty() && !format.lines)) {
+    std::string wanted;
+    for (const auto& [column, value] : format.text.where)
+      wanted += (wanted.empty() ? "" : ", ") + column + ": " + value;
+    return Error{name + ": no points: no row is as where: {" + wanted + "} asks" +
+                 (first_unwanted.empty() ? "" : "; the first has " + first_unwanted)};
+  }
   if (!format.lines) return Error{name + ": no points: found at most a header and comments, expected lines of data"};
   return Error{name + ": no points in the lines " + std::to_string(format.lines->first) + " to " +
                std::to_string(format.lines->second)};
@@ -224,11 +236,17 @@ int ScanBatch::Find(std::string_view name) const {
 
 Result<std::unique_ptr<ScanReader>> ScanReader::Open(const ScanFormat& format) {
   if (format.angle) return OpenLogged(format);
-  if (const FileKind* const kind = FindFileKind(format)) return kind->open(format);
+  SCANCAL_ASSIGN_OR_RETURN(const FileKind* const kind, FindFileKind(format));
+  if (kind != nullptr) return kind->open(format);
   if (format.layout) return OpenWideCsv(format);
-  auto reader = IsNpy(format.path) ? OpenNpy(format) : OpenCsv(format);
+  SCANCAL_ASSIGN_OR_RETURN(DecodedFile file, DecodedFile::Open(format.path));
+  const bool is_array = IsNpy(format.path) || file.start().starts_with(kNpyStart);
+  auto reader = is_array ? OpenNpy(format, std::move(file)) : OpenCsv(format, std::move(file));
   if (reader.ok() || reader.error().kind != ErrorKind::kUnknownLayout) return reader;
-  return Error{reader.error().message + TriedFileKinds(), ErrorKind::kUnknownLayout};
+  return Error{reader.error().message + (IsReadOnce(format.path) ? "; of a pipe only text and .npy are read; write it "
+                                                                   "into a file"
+                                                                 : TriedFileKinds()),
+               ErrorKind::kUnknownLayout};
 }
 
 }  // namespace scancal

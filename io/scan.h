@@ -17,6 +17,8 @@
 
 namespace scancal {
 
+class DecodedFile;
+
 struct ScanColumn {
   std::string name;  // "angle", "y"
   Dimension dimension = Dimension::kNone;
@@ -53,6 +55,12 @@ struct LoggedAngle {
   std::string echo = {};             // what was declared, in words
 };
 
+// Of a bag of ROS messages: what the data set names; empty: the only one there is.
+struct RosNames {
+  std::string topic;                    // of the scans
+  std::string joint, joint_topic = {};  // whose position is the angle, and where it is told
+};
+
 struct ScanFormat {  // how one scan file is to be read, as the data set declares it
   std::filesystem::path path;
   std::string kind;                              // a FileKind's name; empty: told from the content
@@ -67,6 +75,7 @@ struct ScanFormat {  // how one scan file is to be read, as the data set declare
   std::optional<double> invalid;                 // this value, as it stands in the file, is a missing point
   std::vector<double> more_invalid;              // and these
   std::optional<WideLayout> layout;
+  RosNames ros;
   std::optional<std::pair<int64_t, int64_t>>
       lines;  // keep only these lines of the file (rows of a .npy), 1-based, inclusive
 };
@@ -78,7 +87,8 @@ struct ScanBatch {                           // equally long columns, in the ord
   int Find(std::string_view name) const;  // index, or -1
 };
 
-// What a data set, or a target of its own, says of its files: `format`, `columns`, `angle`, `invalid`, `text`, `where`.
+// What a data set, or a target of its own, says of its files: `format`, `columns`, `angle`, `invalid`, `text`, `where`;
+// of bags `topic`, `joint`, `joint_topic`.
 // folder: where a file of angles counts from.
 void ReadFormat(YamlMap map, const std::filesystem::path& folder, ScanFormat* format);
 // Of them those that a table of few lines has as well: `columns`; `text` and `where`.
@@ -110,9 +120,9 @@ class ScanReader {
 };
 
 // The formats, each of its own; ScanReader::Open chooses.
-Result<std::unique_ptr<ScanReader>> OpenCsv(const ScanFormat& format);
+Result<std::unique_ptr<ScanReader>> OpenCsv(const ScanFormat& format, DecodedFile file);
 Result<std::unique_ptr<ScanReader>> OpenWideCsv(const ScanFormat& format);
-Result<std::unique_ptr<ScanReader>> OpenNpy(const ScanFormat& format);
+Result<std::unique_ptr<ScanReader>> OpenNpy(const ScanFormat& format, DecodedFile file);
 // Any of them, with the angles of format.angle.
 Result<std::unique_ptr<ScanReader>> OpenLogged(const ScanFormat& format);
 // Of a file that has profiles without angles: whether they are joined by the number of the profile (else they come from
@@ -144,7 +154,8 @@ Result<std::vector<std::pair<size_t, std::string>>> ChooseWhere(const ScanFormat
 std::optional<double> MatchColumn(const ScanColumn& wanted, std::string_view found, const Units& units,
                                   std::string_view own_unit = {});
 
-// "left.csv: no points": the file has none, or the wanted lines have none.
-Error NoPoints(const ScanFormat& format, int64_t lines_in_file);
+// "left.csv: no points": the file has none, or the wanted lines or rows have none. first_unwanted: what a row that
+// `where` leaves out has in its columns.
+Error NoPoints(const ScanFormat& format, int64_t lines_in_file, const std::string& first_unwanted = {});
 
 }  // namespace scancal

@@ -216,7 +216,11 @@ class WideReader : public CsvReader {
 
 }  // namespace
 
-Result<std::unique_ptr<ScanReader>> OpenCsv(const ScanFormat& format) { return OpenText<LongReader>(format); }
-Result<std::unique_ptr<ScanReader>> OpenWideCsv(const ScanFormat& format) { return OpenText<WideReader>(format); }
+Result<std::unique_ptr<ScanReader>> OpenCsv(const ScanFormat& format, DecodedFile file) {
+  return OpenText<LongReader>(format, DelimitedText::Open(std::move(file)));
+}
+Result<std::unique_ptr<ScanReader>> OpenWideCsv(const ScanFormat& format) {
+  return OpenText<WideReader>(format, DelimitedText::Open(format.path));
+}
 
 }  // namespace scancal

@@ -43,7 +43,7 @@ class CsvReader : public ScanReader {
   // There were points, or none at all at the end of the file is an error.
   Result<bool> Taken(size_t points) {
     any_point_ |= points > 0;
-    if (!any_point_ && missing_ == 0) return NoPoints(format_, text_.line());
+    if (!any_point_ && missing_ == 0) return NoPoints(format_, text_.line(), text_.first_unwanted());
     return points > 0;
   }
 
@@ -57,9 +57,9 @@ class CsvReader : public ScanReader {
 
 // Reader: a CsvReader with Result<void> ReadHeader().
 template <class Reader>
-Result<std::unique_ptr<ScanReader>> OpenText(const ScanFormat& format) {
-  SCANCAL_ASSIGN_OR_RETURN(DelimitedText text, DelimitedText::Open(format.path));
-  auto reader = std::make_unique<Reader>(format, std::move(text));
+Result<std::unique_ptr<ScanReader>> OpenText(const ScanFormat& format, Result<DelimitedText> text) {
+  if (!text.ok()) return text.error();
+  auto reader = std::make_unique<Reader>(format, *std::move(text));
   SCANCAL_RETURN_IF_ERROR(reader->ReadHeader());
   return std::unique_ptr<ScanReader>(std::move(reader));
 }

@@ -93,7 +93,7 @@ ScanDeclaration ReadTarget(YamlMap target, const YamlMap& top, const Dataset& da
 
 bool SamePoints(const ScanDeclaration& a, const ScanDeclaration& b) {
   return a.format.path.lexically_normal() == b.format.path.lexically_normal() && a.format.lines == b.format.lines &&
-         a.keep == b.keep && a.format.text.where == b.format.text.where;
+         a.keep == b.keep && a.format.text.where == b.format.text.where && a.format.ros.topic == b.format.ros.topic;
 }
 
 bool IsKnown(const char* name, const Dataset& dataset) {

@@ -7,6 +7,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class ConvertTest : public CliTest {
  protected:
@@ -81,6 +82,27 @@ TEST_F(ConvertTest, WhatIsWrongIsToldInOneSentenceAndNothingIsWritten) {
   EXPECT_THAT(Refusal(Path("absent.csv"), out), HasSubstr("no such file"));
   EXPECT_THAT(OneSentence(RunScancal({"convert", in.string()})), HasSubstr("found 1 arguments, expected two"));
   EXPECT_FALSE(fs::exists(out));
+}
+
+TEST_F(ConvertTest, TheStandardInput) {
+  const fs::path in = Path("in.csv"), array = Path("array.npy"), out = Path("out.csv");
+  WriteWhole(in, "angle_rad,y_mm,z_mm\n1,2,3\n4,5,6\n");
+  EXPECT_EQ(Convert(in, array).exit_code, 0);
+  const Outcome outcome = RunScancal({"convert", "-", out.string(), "--as=columns: [angle_rad, y_mm, z_mm]"},
+                                     {.folder = {}, .largest_file = {}, .input = array});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(ReadWhole(out), ReadWhole(in));
+  EXPECT_THAT(Refusal("-", out), HasSubstr("the standard input is closed or a terminal, expected a file or a pipe"));
+}
+
+TEST_F(ConvertTest, DepthIsAsItWas) {
+  const fs::path in = Path("in.csv"), out = Path("out.csv");
+  WriteWhole(in, "angle_rad,y_mm,z_mm\n1,2,3\n4,5,6\n");
+  EXPECT_THAT(Convert(in, out, "depth: towards").out,
+              HasSubstr("depth is as it was: a data set of " + out.string() + " declares depth: towards"));
+  EXPECT_EQ(ReadWhole(out), ReadWhole(in));
+  EXPECT_THAT(Convert(in, out, "depth: away").out, Not(HasSubstr("declares depth")));
+  EXPECT_THAT(Refusal(in, out, "depth: down"), HasSubstr("expected away or towards"));
 }
 
 }  // namespace

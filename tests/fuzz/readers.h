@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include "io/dataset.h"
@@ -116,6 +117,20 @@ inline void ReadAsGocator(std::string_view bytes) { ReadAsKind(bytes, "gocator")
 inline void ReadAsLjV(std::string_view bytes) { ReadAsKind(bytes, "lj-v"); }
 inline void ReadAsLjX(std::string_view bytes) { ReadAsKind(bytes, "lj-x"); }
 inline void ReadAsHeightImage(std::string_view bytes) { ReadAsKind(bytes, "image"); }
+inline void ReadAsTiff(std::string_view bytes) { ReadAsKind(bytes, "image"); }
+inline void ReadAsRos1(std::string_view bytes) { ReadAsKind(bytes, "ros1"); }
+// SQLite opens files by their names.
+inline void ReadAsRos2(std::string_view bytes) {
+  const std::filesystem::path path = "/dev/shm/fuzz" + std::to_string(::getpid()) + ".db3";
+  std::ofstream(path, std::ios::binary) << bytes;
+  ScanFormat format;
+  format.path = path;
+  format.kind = "ros2";
+  format.columns = {{"angle", Dimension::kAngle}};
+  ReadToItsEnd(format);
+  std::error_code ignored;
+  std::filesystem::remove(path, ignored);
+}
 inline void ReadAsPly(std::string_view bytes) { ReadAsKind(bytes, "ply"); }
 inline void ReadAsPcd(std::string_view bytes) { ReadAsKind(bytes, "pcd"); }
 
@@ -148,6 +163,8 @@ inline constexpr FuzzedReader kFuzzedReaders[] = {{"scan", &ReadAsScan},       {
                                                   {"robot", &ReadAsRobot},     {"result", &ReadAsResult},
                                                   {"gocator", &ReadAsGocator}, {"ljv", &ReadAsLjV},
                                                   {"ljx", &ReadAsLjX},         {"image", &ReadAsHeightImage},
-                                                  {"ply", &ReadAsPly},         {"pcd", &ReadAsPcd}};
+                                                  {"ply", &ReadAsPly},         {"pcd", &ReadAsPcd},
+                                                  {"tiff", &ReadAsTiff},       {"ros1", &ReadAsRos1},
+                                                  {"ros2", &ReadAsRos2}};
 
 }  // namespace scancal

@@ -175,6 +175,9 @@ TEST_F(DialectTest, OnlyRowsWithAValue) {
       Format("Axis,Source,angle,y,z\nX,0,none,none,none\nZ,0,0.5,71.326,-100\nZ,1,9,9,9\nZ,0.0,-0.25,1071.5,3\n");
   format.text.where = {{"Axis", "Z"}, {"Source", "0"}};
   ExpectReads(format, "");
+  format.text.where = {{"Axis", "Z"}, {"Source", "7"}};
+  EXPECT_THAT(ReadAll(format).error,
+              HasSubstr(": no points: no row is as where: {Axis: Z, Source: 7} asks; the first has \""));
   format.text.where = {{"Axes", "Z"}};
   EXPECT_THAT(ReadAll(format).error, AllOf(HasSubstr("where: found the columns"), HasSubstr("'Axes'")));
 }

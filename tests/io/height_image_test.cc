@@ -1,6 +1,7 @@
 // Images of heights: PNG of 16 bits, two-dimensional .npy.
 #include <gmock/gmock.h>
 #include <zlib.h>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -41,6 +42,46 @@ std::string Png(const std::vector<std::vector<uint16_t>>& rows, uint32_t height,
   const std::string header =
       BigEndian(static_cast<uint32_t>(rows[0].size())) + BigEndian(height) + std::string{bits, 0, 0, 0, interlaced};
   return "\x89PNG\r\n\x1a\n" + Chunk("IHDR", header) + Chunk("IDAT", packed) + Chunk("IEND", "");
+}
+
+struct TiffTags {
+  uint16_t bits = 16, format = 1, samples = 1, photometric = 1,
+           packing = 1;  // format: 1 unsigned, 2 signed, 3 floating
+  uint32_t tile = 0, next = 0;
+};
+
+// Of two rows, in one strip, little endian.
+template <class Number>
+std::string Tiff(const std::vector<Number>& numbers, const TiffTags& tags = {}, uint32_t height = 2) {
+  const auto number = [](uint32_t value) { return std::string(reinterpret_cast<const char*>(&value), 4); };
+  std::string strip(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number));
+  if (tags.packing == 8) {
+    std::string packed(compressBound(strip.size()), '\0');
+    uLongf size = packed.size();
+    compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(strip.data()),
+             strip.size());
+    strip = packed.substr(0, size);
+  }
+  const std::vector<std::pair<uint16_t, uint32_t>> fields = {
+      {256, static_cast<uint32_t>(numbers.size()) / 2 / tags.samples},
+      {257, height},
+      {258, tags.bits},
+      {259, tags.packing},
+      {262, tags.photometric},
+      {tags.tile ? 324 : 273, 8},
+      {277, tags.samples},
+      {tags.tile ? 322 : 278, tags.tile ? tags.tile : height},
+      {tags.tile ? 325 : 279, static_cast<uint32_t>(strip.size())},
+      {tags.tile ? 323 : 284, tags.tile ? tags.tile : 1},
+      {339, tags.format}};
+  std::vector<std::string> entries;
+  for (const auto& [tag, value] : fields)
+    entries.push_back(number(tag | 4U << 16U) + number(1) + number(value));  // type 4: LONG
+  std::sort(entries.begin(), entries.end());
+  std::string directory = number(static_cast<uint32_t>(entries.size())).substr(0, 2);
+  for (const std::string& entry : entries) directory += entry;
+  return std::string("II*\0", 4) + number(static_cast<uint32_t>(8 + strip.size())) + strip + directory +
+         number(tags.next);
 }
 
 template <class Number>
@@ -99,6 +140,50 @@ TEST_F(HeightImageTest, ArraysOfAnyNumbersAreTheSame) {
   EXPECT_THAT(scan["y"], ElementsAre(-501, 3));
   EXPECT_THAT(scan.description, HasSubstr(".npy of <i2, 2 rows of 1, y = 0.5 v - 1 mm"));
 }
+
+#ifdef SCANCAL_TIFF
+TEST_F(HeightImageTest, APixelOfATiffIsAPoint) {
+  const std::vector<uint16_t> pixels = {1000, 0, 65535, 3, 4, 0};
+  for (const uint16_t packing : {uint16_t{1}, uint16_t{8}}) {
+    const Scan scan = Read(Tiff(pixels, {.packing = packing}));
+    EXPECT_THAT(scan.error, IsEmpty());
+    EXPECT_THAT(scan["y"], ElementsAre(499, 32766.5, 0.5, 1));
+    EXPECT_THAT(scan["z"], ElementsAre(-1, -0.5, -1, -0.75));
+    EXPECT_THAT(scan["angle"], ElementsAre(1, 1, 1.5, 1.5));
+    EXPECT_EQ(scan.missing, 2);
+    EXPECT_THAT(scan.description, HasSubstr("TIFF, 16 bits, 2 rows of 3, y = 0.5 v - 1 mm"));
+  }
+  EXPECT_THAT(Read(Tiff(std::vector<int16_t>{-4, 2}, {.format = 2}))["y"], ElementsAre(-3, 0));
+  ScanFormat format = Format(Tiff(std::vector<float>{-0.5F, std::numeric_limits<float>::quiet_NaN()}, {32, 3}));
+  format.layout->scaled = false;
+  EXPECT_THAT(ReadAll(format)["y"], ElementsAre(-1.25));
+}
+
+TEST_F(HeightImageTest, OtherTiffsAreRefused) {
+  const std::vector<uint16_t> pixels = {1, 2, 3, 4};
+  EXPECT_THAT(Read(Tiff(std::vector<uint8_t>{1, 2}, {.bits = 8})).error,
+              HasSubstr(": found an image of 8 bits, grey, expected heights: 16 bits, or 32 in floating point, grey"));
+  for (const TiffTags& tags : {TiffTags{.samples = 2}, TiffTags{.photometric = 0}})
+    EXPECT_THAT(Read(Tiff(pixels, tags)).error,
+                HasSubstr(": found an image of 16 bits, colours, transparency or white"));
+  EXPECT_THAT(Read(Tiff(pixels, {.tile = 16})).error, HasSubstr(": found an image in tiles, expected strips of rows"));
+  EXPECT_THAT(Read(Tiff(pixels, {.next = 8})).error, HasSubstr(": found more than one image in it, expected one"));
+}
+
+TEST_F(HeightImageTest, LengthsInATiffAreNotTrusted) {
+  const std::string tiff = Tiff(std::vector<uint16_t>{1, 2, 3, 4});
+  for (size_t size = 8; size + 4 < tiff.size(); ++size)  // the place of the next image, 0, may be missing
+    EXPECT_THAT(Read(tiff.substr(0, size)).error, HasSubstr(" cannot be read as TIFF: ")) << size;
+  for (const uint32_t height : {9U, 90'000'000U})
+    EXPECT_THAT(Read(Tiff(std::vector<uint16_t>{1, 2}, {}, height)).error,
+                HasSubstr(": its strips cannot be read as TIFF: Bogus"));
+  EXPECT_THAT(Read(Tiff(std::vector<uint16_t>{1, 2}, {.packing = 8}, 90'000'000)).error,
+              HasSubstr(": found 90000000 rows of 1 in "));
+  std::string packed = Tiff(std::vector<uint16_t>{1, 2, 3, 4}, {.packing = 8});
+  packed[12] ^= 1;
+  EXPECT_THAT(Read(packed).error, HasSubstr(" cannot be read as TIFF: Decoding error"));
+}
+#endif
 
 TEST_F(HeightImageTest, DeclaredUnitsAndLidars) {
   ScanFormat format = Format(Png(kPixels, 2));
@@ -172,7 +257,7 @@ TEST_F(HeightImageTest, OtherImagesAreRefused) {
   EXPECT_THAT(Read(Npy<uint16_t>("<u2", "(2,)", {5, 6})).error, HasSubstr("expected (rows, columns)"));
   ScanFormat format = Format("angle,y,z\n1,2,3\n");
   format.kind = "image";
-  EXPECT_THAT(ReadAll(format).error, HasSubstr(": found neither a PNG nor a .npy file"));
+  EXPECT_THAT(ReadAll(format).error, HasSubstr(": found neither a PNG, a TIFF nor a .npy file"));
 }
 
 TEST_F(HeightImageTest, LengthsInHeadersAreNotTrusted) {

@@ -1,5 +1,6 @@
 // Text of Keyence's profilers.
 #include <gmock/gmock.h>
+#include <array>
 #include "tests/io/scan_test.h"
 
 namespace scancal {
@@ -120,6 +121,26 @@ TEST_F(KeyenceTest, OtherHeightsInTextAreReadAsTheyAre) {
 TEST_F(KeyenceTest, ALineThatIsCutOffIsAnError) {
   EXPECT_THAT(ReadAll(Format(kProfiles + "400000\t1")).error,
               HasSubstr(":4: found 1 cells from column 2 on, expected 3 as before; the file is probably cut off here"));
+}
+
+TEST_F(KeyenceTest, AnotherFormatThanTheNamedIsTold) {
+  const std::string ljv = "-200000\t1500\t7\n0\t250\t250\n200000\t151\t350\n";
+  const std::string names = "angle,y,z\n1,2,3\n", array = "\x93NUMPY\1";
+  for (const auto& [kind, contents, sentence] : std::vector<std::array<std::string, 3>>{
+           {"gocator", ljv, ": found Keyence LJ-V profiles, expected Gocator CSV as format: gocator says"},
+           {"ply", ljv, ": found Keyence LJ-V profiles, expected PLY as format: ply says"},
+           {"lj-v", array, ": found an array or an image, expected Keyence LJ-V profiles as format: lj-v says"},
+           {"gocator", names, ": found none of the sections of a Gocator's CSV, expected Profile, RawProfile or Part"},
+           {"lj-v", names, ": found no tabs, expected profiles of a Keyence LJ-V"},
+           {"lj-x", names, ": the heights of a Keyence LJ-X say nothing of their places, expected layout: {image: y"},
+           {"image", names, ": found neither a PNG, a TIFF nor a .npy file"},
+           {"ply", names, ":1: found other data, expected the line ply that a PLY begins with"},
+           {"pcd", names, ": found no line FIELDS, expected the header of a PCD"}}) {
+    ScanFormat format = ScanFileTest::Format("file", contents);
+    format.kind = kind;
+    format.angle = Steps(0, 1);
+    EXPECT_THAT(ReadAll(format).error, HasSubstr(sentence)) << kind;
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <zlib.h>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -34,6 +35,20 @@ std::string Header(const std::string& dictionary, char version = 1) {
 
 std::string Dictionary(const std::string& type, const std::string& shape, const std::string& order = "False") {
   return "{'descr': " + type + ", 'fortran_order': " + order + ", 'shape': " + shape + ", }      ";
+}
+
+std::string Gzip(const std::string& bytes) {
+  z_stream stream = {};
+  deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 9, Z_DEFAULT_STRATEGY);
+  std::string packed(bytes.size() + 1000, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  deflate(&stream, Z_FINISH);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return packed;
 }
 
 class ScanNpyTest : public ::testing::Test {
@@ -178,6 +193,29 @@ TEST_F(ScanNpyTest, AnotherShapeIsAnError) {
   }
   EXPECT_EQ(Read(Header(Dictionary("'<f8'", "(3, 2)")) + Bytes<double>({1, 2, 3, 4, 5, 6})).error,
             Place(": found the shape (3, 2), expected (points, 3) as declared by columns: [angle, y, z]"));
+}
+
+TEST_F(ScanNpyTest, PackedOrThroughAPipeOfAnyName) {
+  for (const std::string& contents : {doubles_, Gzip(doubles_)})
+    for (const bool piped : {false, true}) {
+      ScanFormat format = Format("");
+      format.path = folder_.path() / (piped ? "stdin" : "packed");
+      std::filesystem::remove(format.path);
+      const int made = piped ? ::mkfifo(format.path.c_str(), 0600) : 0;
+      ASSERT_EQ(made, 0);
+      std::thread writer([&] { folder_.Write(format.path.filename(), contents); });
+      if (!piped) writer.join();
+      format.lines = {2, 9};
+      const Scan scan = ReadAll(format);
+      if (piped) writer.join();
+      EXPECT_THAT(scan.error, IsEmpty());
+      EXPECT_THAT(scan["y"], ElementsAre(5));
+      EXPECT_EQ(scan.description, contents == doubles_ ? "" : "gzip");
+    }
+  EXPECT_THAT(
+      Read(Gzip(doubles_.substr(0, doubles_.size() - 8))).error,
+      HasSubstr("found the end after row 1, expected 2 rows: the file was probably cut off before it was packed"));
+  EXPECT_THAT(Read(Gzip(Header(Dictionary("'<f8'", "(9, 9000000000000)")))).error, HasSubstr("expected (points, 3)"));
 }
 
 TEST_F(ScanNpyTest, ArraysWithoutRowsHaveNoPoints) {
