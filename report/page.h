@@ -16,8 +16,9 @@ struct PageChoice {
 };
 
 // Of a calibration.json and FiguresToJson (null: the file has its own), by the program in report/page (Python, with
-// Jinja2 and Matplotlib), which reads nothing else and writes whole files or none. False: it has said why on standard
-// error. An Error: it could not be started.
+// Jinja2 and Matplotlib), which reads nothing else and writes whole files or none. It is looked for beside this
+// program: in ../share/scancal/page where it is installed, in share/scancal/page where it was built. False: it has said
+// why on standard error. An Error: it could not be started.
 Result<bool> WritePage(const std::filesystem::path& calibration, const Json& figures, const PageChoice& choice);
 
 }  // namespace scancal

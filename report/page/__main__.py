@@ -7,13 +7,24 @@ import sys
 import traceback
 from pathlib import Path
 
-import consistency
-from calibration import Complaint, read_calibration
-from language import LANGUAGES, Language
-from output import check_outputs, write_whole
-
 PACKAGES = {"jinja2": "python3-jinja2", "markupsafe": "python3-markupsafe", "matplotlib": "python3-matplotlib",
             "numpy": "python3-numpy", "fontTools": "python3-fonttools", "weasyprint": "weasyprint"}
+
+
+def missing(error: ModuleNotFoundError) -> str:
+    if error.name not in PACKAGES:
+        raise error
+    return (f"scancal: {error.name} is missing in {sys.executable}: install {PACKAGES[error.name]}, or name a Python "
+            "that has it in the environment variable SCANCAL_PYTHON")
+
+
+try:
+    import consistency
+    from calibration import Complaint, read_calibration
+    from language import LANGUAGES, Language
+    from output import check_outputs, write_whole
+except ModuleNotFoundError as module:
+    sys.exit(missing(module))
 
 
 def arguments(given: list[str] | None) -> argparse.Namespace:
@@ -58,10 +69,7 @@ def main(given: list[str] | None = None) -> int:
         print(f"scancal: {complaint}", file=sys.stderr)
         return 1
     except ModuleNotFoundError as error:
-        if error.name not in PACKAGES:
-            raise
-        print(f"scancal: Python's {error.name} is missing: install {PACKAGES[error.name]}, or run scripts/setup",
-              file=sys.stderr)
+        print(missing(error), file=sys.stderr)
         return 1
     except Exception as error:  # whatever an edited file may lead to, in one sentence
         place = traceback.extract_tb(error.__traceback__)[-1]
@@ -70,8 +78,8 @@ def main(given: list[str] | None = None) -> int:
               "refine the data set again", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        missing = ", ".join(str(file) for file in (choice.out, choice.pdf, choice.dcc) if file)
-        print(f"\nscancal: interrupted: {missing}: not all of it was written", file=sys.stderr)
+        unwritten = ", ".join(str(file) for file in (choice.out, choice.pdf, choice.dcc) if file)
+        print(f"\nscancal: interrupted: {unwritten}: not all of it was written", file=sys.stderr)
         return 130  # as a shell has it
     return 0
 
