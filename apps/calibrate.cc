@@ -6,6 +6,7 @@
 #include <future>
 #include <optional>
 #include "apps/command.h"
+#include "apps/done.h"
 #include "io/input_file.h"
 #include "io/json_file.h"
 #include "io/output_file.h"
@@ -16,6 +17,8 @@
 
 DEFINE_string(out, "", "folder or file to write");
 DEFINE_bool(report, false, "write report.html beside calibration.json, as scancal report does");
+DEFINE_bool(accept_unreliable, false, "exit code 0 in place of 2: what was computed is done, for engines that repeat");
+DEFINE_bool(resume, false, "nothing to do where --out has the result of the same files and flags; done.json tells");
 DECLARE_string(language);
 DECLARE_string(sign);
 
@@ -36,7 +39,12 @@ Result<std::unique_ptr<Scanner>> Load(const std::vector<std::string>& arguments)
   return kind->load(dataset);
 }
 
-Result<Calibration> Calibrated(const std::vector<std::string>& arguments, RefineChoice choice) {
+struct Calibrated {
+  Calibration calibration;
+  std::vector<std::filesystem::path> read;
+};
+
+Result<Calibrated> Calibrate(const std::vector<std::string>& arguments, RefineChoice choice) {
   SCANCAL_RETURN_IF_ERROR(CheckLanguage());
   const std::filesystem::path folder = FLAGS_out, file = folder / "calibration.json";
   std::optional<SigningKey> key;
@@ -65,18 +73,28 @@ Result<Calibration> Calibrated(const std::vector<std::string>& arguments, Refine
   SCANCAL_ASSIGN_OR_RETURN(with.data, scanner->Data());
   SCANCAL_RETURN_IF_ERROR(WriteJson(file, ToJson(calibration, with)));
   if (key) SCANCAL_RETURN_IF_ERROR(key->Sign(file));
-  return calibration;
+  return Calibrated{std::move(calibration), scanner->Files()};
 }
+
+int ExitCode(bool ok) { return ok || FLAGS_accept_unreliable ? kTrusted : kUnreliable; }
 
 }  // namespace
 
 int CalibrateAndReport(const std::vector<std::string>& arguments, const RefineChoice& choice) {
-  const Result<Calibration> calibration = Calibrated(arguments, choice);
-  if (!calibration.ok()) return Complain(calibration.error().message);
-  std::printf("%s", ToText(*calibration).c_str());
+  const std::filesystem::path folder = FLAGS_out, file = folder / "calibration.json";
+  if (FLAGS_resume && arguments.size() == 1) {
+    const Json done = FindDone(folder, arguments[0]);
+    if (!done.is_null()) {
+      fmt::print("unchanged: {} is of the same files, flags and version; status {}\n", file.string(),
+                 done["status"].get<std::string>());
+      return ExitCode(done["status"] == "ok");
+    }
+  }
+  const Result<Calibrated> done = Calibrate(arguments, choice);
+  if (!done.ok()) return Complain(done.error().message);
+  std::printf("%s", ToText(done->calibration).c_str());
   if (FLAGS_report) {
     std::fflush(stdout);
-    const std::filesystem::path folder = FLAGS_out, file = folder / "calibration.json";
     const Result<Rechecked> again = Recheck(file, /*monte_carlo=*/false);  // it was drawn a moment ago
     if (!again.ok()) return Complain(again.error().message);
     const Result<bool> written =
@@ -84,7 +102,11 @@ int CalibrateAndReport(const std::vector<std::string>& arguments, const RefineCh
     if (!written.ok()) return Complain(written.error().message);
     if (!*written) return kBadInput;
   }
-  return calibration->ok() ? kTrusted : kUnreliable;
+  if (FLAGS_resume) {
+    const Result<void> kept = WriteDone(folder, arguments[0], done->read, done->calibration);
+    if (!kept.ok()) return Complain(kept.error().message);
+  }
+  return ExitCode(done->calibration.ok());
 }
 
 Result<void> CheckTrials(const std::string& flag, int trials) {

@@ -39,7 +39,8 @@ const Command kMonteCarloCommand = {"montecarlo",
                                      {"seed", "of all draws: the same seed gives the same digits"},
                                      {"digits"},
                                      {"threads"},
-                                     {"sign"}},
+                                     {"sign"},
+                                     {"accept_unreliable"}},
                                     &RunMonteCarlo};
 
 }  // namespace scancal

@@ -59,9 +59,10 @@ TEST(HelpTest, VersionIsOneLine) {
 
 TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
   EXPECT_THAT(HelpFlags("refine"),
-              ElementsAre("out", "report", "language", "residual", "weights", "max_iterations", "montecarlo", "sign"));
-  EXPECT_THAT(HelpFlags("montecarlo"),
-              ElementsAre("out", "report", "language", "trials", "seed", "digits", "threads", "sign"));
+              ElementsAre("out", "report", "language", "residual", "weights", "max_iterations", "montecarlo", "sign",
+                          "batch", "threads", "resume", "accept_unreliable"));
+  EXPECT_THAT(HelpFlags("montecarlo"), ElementsAre("out", "report", "language", "trials", "seed", "digits", "threads",
+                                                   "sign", "accept_unreliable"));
   EXPECT_THAT(HelpFlags("report"), ElementsAre("out", "pdf", "dcc", "figures", "previous", "language", "key"));
   EXPECT_THAT(HelpFlags("recheck"), ElementsAre("key", "sign"));
   EXPECT_THAT(HelpFlags("compare"), ElementsAre("steps", "surface"));
