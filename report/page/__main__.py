@@ -60,11 +60,11 @@ def main(given: list[str] | None = None) -> int:
             if choice.out:
                 write_whole(choice.out, html.encode())
             if choice.pdf:
-                from pdf import print_page
-                print_page(html, choice.pdf)
+                from pdf import foot, print_page
+                print_page(html, foot(calibration, language), choice.pdf)
         if choice.dcc:
             from dcc import write_certificate
-            write_certificate(calibration, language, choice.dcc)
+            write_certificate(calibration, previous, language, choice.dcc)
     except Complaint as complaint:
         print(f"scancal: {complaint}", file=sys.stderr)
         return 1

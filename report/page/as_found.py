@@ -39,23 +39,34 @@ def changes(found: Calibration, left: Calibration) -> list[Change]:
     earlier = {parameter["name"]: parameter for parameter in found.estimated}
     turns = {name: change for first in earlier if first.endswith("_rx")
              for name, change in _turn(first[:-3], found, left).items()}
-    return [turns.get(parameter["name"]) or _change(earlier[parameter["name"]], parameter)
+    told = [turns.get(parameter["name"]) or _change(earlier[parameter["name"]], parameter)
             for parameter in left.estimated if parameter["name"] in earlier]
+    return told if found.is_reliable and left.is_reliable else [_without_U(each) for each in told]
 
 
 def doubts(found: Calibration, left: Calibration) -> list[Doubt]:
     """What makes the comparison doubtful, worst first."""
+    items = [_item(found), _item(left)]
     told = [Doubt("same_file")] if found.sha256 and found.sha256 == left.sha256 else []
     told += [Doubt(key, (str(a), str(b))) for key, a, b in (
         ("model", found["model"], left["model"]), ("residual", found.get("residual"), left.get("residual")),
-        ("item", _item(found), _item(left))) if a and b and a != b]
+        ("item", *items)) if a and b and a != b]
+    told += [Doubt("item_of_one", (items[0] or items[1],))] if bool(items[0]) != bool(items[1]) else []
     told += [Doubt(f"{which}_unreliable") for which, c in (("found", found), ("left", left))
              if not c.is_reliable]
     told += [Doubt(key, tuple(names)) for key, names in (
         ("missing", _missing(found, left)), ("roles", _in_other_roles(found, left)),
+        ("values", _at_other_values(found, left)), ("considered", _considered_in_one(found, left)),
         ("nominal", _with_other_nominals(found, left)), ("inputs", _common_inputs(found, left)),
         ("influences", _common_influences(found, left))) if names]
     return told
+
+
+def _without_U(change: Change) -> Change:
+    """Where one of the two is unreliable nobody knows how far they may lie apart."""
+    found, left = ({key: value for key, value in each.items() if key not in ("u", "U", "k")}
+                   for each in (change.found, change.left))
+    return Change(found, left, change.change, None, None)
 
 
 def _change(found: dict, left: dict) -> Change:
@@ -139,17 +150,27 @@ def _missing(found: Calibration, left: Calibration) -> list[str]:
     return sorted(names[0] ^ names[1])
 
 
+def _pairs(found: Calibration, left: Calibration) -> list[tuple[dict, dict]]:
+    """Parameters that both know."""
+    return [(earlier, parameter) for parameter in left["parameters"] if (earlier := found.parameter(parameter["name"]))]
+
+
 def _in_other_roles(found: Calibration, left: Calibration) -> list[str]:
-    """Estimated in one and not in the other, or held at another value: the others answer to that."""
-    other = []
-    for parameter in left["parameters"]:
-        earlier = found.parameter(parameter["name"])
-        if not earlier:
-            continue
-        moved = parameter["role"] != "estimate" and earlier.get("value") != parameter.get("value")
-        if earlier["role"] != parameter["role"] or moved:
-            other.append(parameter["name"])
-    return other
+    """Estimated in one and not in the other."""
+    return [now["name"] for earlier, now in _pairs(found, left)
+            if (earlier["role"] == "estimate") != (now["role"] == "estimate")]
+
+
+def _at_other_values(found: Calibration, left: Calibration) -> list[str]:
+    """Estimated in neither, but with another value: the others answer to that. Without one it is 0."""
+    return [now["name"] for earlier, now in _pairs(found, left) if "estimate" not in (earlier["role"], now["role"])
+            and (earlier.get("value") or 0) != (now.get("value") or 0)]
+
+
+def _considered_in_one(found: Calibration, left: Calibration) -> list[str]:
+    """In u of one, held as exactly known in the other, at the same value."""
+    return [now["name"] for earlier, now in _pairs(found, left) if {earlier["role"], now["role"]} == {"consider", "hold"}
+            and (earlier.get("value") or 0) == (now.get("value") or 0)]
 
 
 def _with_other_nominals(found: Calibration, left: Calibration) -> list[str]:

@@ -67,6 +67,11 @@ class Calibration(dict):
         return [parameter for parameter in self.estimated if LINK_ERROR.fullmatch(parameter["name"])]
 
     @property
+    def own(self) -> list[dict]:
+        """The estimated parameters that are the result: all but a robot's link errors, which have a table of theirs."""
+        return [parameter for parameter in self.estimated if parameter not in self.link_errors] or self.estimated
+
+    @property
     def coverage_percent(self) -> float:
         """Of every U."""
         return 100 * (self.get("coverage_probability") or 0.95)

@@ -1,17 +1,19 @@
 """--dcc: the Digital Calibration Certificate of a calibration (https://ptb.de/dcc, 3.3.0 with D-SI 2.2.1).
 
-Lengths are written in metre, angles in radian. A number is the shortest decimal that stands for the one in
-calibration.json, shifted by whole powers of ten: no digit is rounded or added.
+Lengths are written in mm, angles in radian. A result is rounded as GUM 7.2.6 has it: U to two digits, the value to the
+last of them, k to three. The covariance and the budget, with which one goes on to compute, keep every digit.
 """
 import math
 import re
-from decimal import Decimal
+from decimal import Decimal, InvalidOperation
 from pathlib import Path
 
 import jinja2
 
+import as_found
 import procedure
-from administration import as_text, label
+import status
+from administration import as_text, label, period
 from calibration import Calibration, Complaint
 from dcc_administration import Administration, read_administration
 from language import Language
@@ -19,16 +21,17 @@ from meaning import meaning
 from output import write_whole
 
 TEMPLATES = Path(__file__).parent / "templates"
-SI = {"mm": (-3, r"\metre"), "rad": (0, r"\radian"), "1": (0, r"\one")}  # power of ten, unit
+SI = {"mm": r"\milli\metre", "rad": r"\radian", "1": r"\one"}
 NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def write_certificate(c: Calibration, t: Language, file: Path) -> None:
+def write_certificate(c: Calibration, previous: Calibration | None, t: Language, file: Path) -> None:
     """Raises Complaint, and writes nothing, if result or laboratory do not give enough."""
-    write_whole(file, certificate(c, t).encode("utf-8"))
+    write_whole(file, certificate(c, previous, t).encode("utf-8"))
 
 
-def certificate(c: Calibration, t: Language) -> str:
+def certificate(c: Calibration, previous: Calibration | None, t: Language) -> str:
+    """previous: as found."""
     _check_result(c)
     administration = Administration(c.get("certificate"))
     given = read_administration(administration)
@@ -40,12 +43,33 @@ def certificate(c: Calibration, t: Language) -> str:
                                      trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
                                      undefined=jinja2.StrictUndefined, finalize=_as_xml)
     template = environment.get_template("certificate.xml")
-    return template.render(t=t, c=c, given=given, **_content(c, t, given))
+    def condition(what: str) -> str:
+        words = ", ".join(label((key,), {key: 0}, t) for key in what.split(", ")) if what else ""
+        return words or label(("conditions",), {"conditions": 0}, t)
+    return template.render(t=t, c=c, given=given, condition=condition, **_content(c, previous, t, given))
 
 
-def number(value: float, power: int = 0) -> str:
-    """value 10^power to its last digit."""
-    return str(Decimal(repr(value)).scaleb(power))
+def number(value: float) -> str:
+    """To its last digit."""
+    return str(Decimal(repr(value)))
+
+
+def rounded(value: float, digits: int) -> str:
+    """To so many digits that count."""
+    exact = Decimal(repr(value))
+    for _ in range(2):  # 0.0996 becomes 0.100 first
+        exact = exact.quantize(Decimal(1).scaleb(exact.adjusted() - digits + 1)) if exact else exact
+    return str(exact)
+
+
+def to_last_digit_of(U: float, value: float) -> str:
+    """value to the second digit of U."""
+    last = Decimal(rounded(U, 2)).as_tuple().exponent
+    try:
+        exact = Decimal(repr(value)).quantize(Decimal(1).scaleb(last))
+        return format(exact, "f") if abs(last) < 30 else str(exact)
+    except InvalidOperation:  # more digits than a decimal has: a U without sense
+        return number(value)
 
 
 def _as_xml(found: object) -> object:
@@ -76,47 +100,64 @@ def _is_number(value: object) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _content(c: Calibration, t: Language, given: dict) -> dict[str, object]:
+def _content(c: Calibration, previous: Calibration | None, t: Language, given: dict) -> dict[str, object]:
     """For templates/certificate.xml."""
     units = [parameter["unit"] for parameter in c.estimated]
     return {"version": as_text(c.get("version")) or "–", "procedure": procedure.sentences(c, t),
             "quantities": [_quantity(parameter, t) for parameter in c.estimated],
             "columns": _columns(c["covariance"], units), "joint_k": _factor(c["joint"]["k"]),
             "probability": _factor(c.get("coverage_probability") or 0.95),
+            "exact": [number(parameter["value"]) for parameter in c.estimated],
+            "found": _as_found(previous, c, t) if previous else None,
             "budget": [_source(line, c) for line in c.get("budget") or []],
-            "trials": (c.get("montecarlo") or {}).get("trials"),
+            "unexcluded": status.unexcluded_in_words(c, t), "trials": (c.get("montecarlo") or {}).get("trials"),
             "warnings": [t.translated(str(warning)) for warning in c.get("warnings") or []],
             "rest": [(label(path, c["certificate"], t), text) for path, text in given["rest"]]}
 
 
 def _quantity(parameter: dict, t: Language) -> dict[str, object]:
-    power, unit = SI[parameter["unit"]]
-    dof = number(parameter["dof"]) if _is_number(parameter.get("dof")) else ""
-    numbers = {key: number(parameter[key], power) for key in ("value", "u", "U")}
-    return numbers | {"name": parameter["name"], "meaning": meaning(parameter["name"], t), "unit": unit,
-                      "k": _factor(parameter["k"]), "dof": dof}
+    dof = str(math.floor(parameter["dof"])) if _is_number(parameter.get("dof")) else ""  # GUM G.4.1
+    return {"name": parameter["name"], "meaning": meaning(parameter["name"], t), "unit": SI[parameter["unit"]],
+            "value": to_last_digit_of(parameter["U"], parameter["value"]), "U": rounded(parameter["U"], 2),
+            "u": rounded(parameter["u"], 2), "k": _factor(parameter["k"], 3), "dof": dof}
+
+
+def _as_found(found: Calibration, left: Calibration, t: Language) -> dict[str, object]:
+    """The values of before, and what may be said of the change; units are those of as left."""
+    told = []
+    for each in as_found.changes(found, left):
+        if _is_number(each.found.get("U")) and _is_number(each.found.get("value")) and each.e_n is not None:
+            told.append({"name": each.left["name"], "value": to_last_digit_of(each.found["U"], each.found["value"]),
+                         "U": rounded(each.found["U"], 2), "k": _factor(each.found["k"], 3),
+                         "unit": SI[each.left["unit"]], "change": to_last_digit_of(each.found["U"], each.change),
+                         "e_n": rounded(each.e_n, 2),
+                         "meaning": t("as_found.agrees" if abs(each.e_n) <= 1 else "as_found.changed")})
+    given = found.get("certificate")
+    named = ", ".join(filter(None, [as_text(given.get("identification")) if isinstance(given, dict) else "",
+                                    period(found, t), str(found.get("name") or "")]))
+    return {"quantities": told, "named": named, "note": t("as_found.note"),
+            "doubts": [t(f"as_found.doubt.{doubt.key}", names=", ".join(doubt.names))
+                       for doubt in as_found.doubts(found, left)]}
 
 
 def _columns(covariance: list[list[float]], units: list[str]) -> list[list[tuple[str, str]]]:
     """Of the covariance matrix: (value, unit) of every element."""
-    return [[(number(row[j], SI[units[i]][0] + SI[units[j]][0]), _product(units[i], units[j]))
+    return [[(number(row[j]), _product(units[i], units[j]))
              for i, row in enumerate(covariance)] for j in range(len(units))]
 
 
 def _product(*units: str) -> str:
-    return "".join(SI[unit][1] for unit in units if unit != "1") or r"\one"
+    return "".join(SI[unit] for unit in units if unit != "1") or r"\one"
 
 
-def _factor(k: float) -> str:
-    return format(Decimal(repr(k)), "f")  # the schema has no exponent here
+def _factor(k: float, digits: int = 0) -> str:
+    """To so many digits, 0: to all."""
+    return format(Decimal(rounded(k, digits) if digits else repr(k)), "f")  # the schema has no exponent here
 
 
 def _source(line: dict, c: Calibration) -> dict[str, object]:
     """A line of the budget: its own u, and what it brings to each parameter. The unknown is left out."""
-    power, unit = SI[line["unit"]]
-    brought = [(each["name"], (line.get("u") or {}).get(each["name"]), *SI[each["unit"]])
-               for each in c.estimated]
-    return {"name": line["source"], "type": line["type"], "unit": unit,
-            "u": number(line["value"], power) if _is_number(line.get("value")) else "",
-            "contributions": [(name, number(u, shift), of) for name, u, shift, of in brought
-                              if _is_number(u)]}
+    brought = [(each["name"], (line.get("u") or {}).get(each["name"]), SI[each["unit"]]) for each in c.estimated]
+    return {"name": line["source"], "type": line["type"], "unit": SI[line["unit"]],
+            "u": number(line["value"]) if _is_number(line.get("value")) else "",
+            "contributions": [(name, number(u), of) for name, u, of in brought if _is_number(u)]}

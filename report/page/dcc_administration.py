@@ -97,7 +97,8 @@ def read_administration(a: Administration) -> dict[str, object]:
         "item": _thing(a, ("item",), mandatory=True), "laboratory": _contact(a, ("laboratory",)),
         "code": a.text("laboratory", "code"), "customer": _contact(a, ("customer",)),
         "persons": [_person(a, at) for at in a.items("persons", example="[{name: A. Berg, signs: yes}]")],
-        "equipment": [_thing(a, at) for at in a.items("equipment")], "statements": _statements(a)}
+        "equipment": [_thing(a, at) for at in a.items("equipment")], "conditions": _conditions(a),
+        "statements": _statements(a)}
     if _is_date(found["begin"]) and _is_date(found["end"]) and found["begin"] > found["end"]:
         a.complaints.append(f"{place(('performed', 'end'))}: {found['end']} lies before the begin, "
                             f"{found['begin']}")
@@ -135,6 +136,14 @@ def _statements(a: Administration) -> list[str]:
     """A text or a list of texts."""
     one = a.text("statements")
     return [one] if one else [a.text(*path) for path in a.items("statements")]
+
+
+def _conditions(a: Administration) -> list[tuple[str, str]]:
+    """The environment: (what, how it was); a text alone has no name."""
+    found = a._at(("conditions",))
+    told = [(path, text) for path, text in leaves(found, ("conditions",))]
+    a._taken |= {path for path, _ in told}
+    return [(", ".join(str(key) for key in path[1:] if isinstance(key, str)), text) for path, text in told]
 
 
 def _is_date(text: str) -> bool:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
+import notation
 from calibration import Calibration
 
 TEXTS = Path(__file__).parent / "texts"
@@ -48,6 +49,7 @@ class Language:
     def sentence(self, english: str) -> Markup:
         """The same for the page: what had to stay English is marked."""
         text, code = self.translated(english)
+        text = notation.in_sentence(text)
         return Markup.escape(text) if code == self.code else Markup('<span lang="en">{}</span>').format(text)
 
     def number(self, text: str) -> str:

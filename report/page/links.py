@@ -1,7 +1,7 @@
 """Errors of a robot's links, in units that fit them: lengths in mm, angles in mrad."""
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from calibration import LINK_ERROR, Calibration
 
@@ -30,9 +30,10 @@ class LinkError:
 
 
 def link_errors(c: Calibration) -> list[LinkError]:
-    """In the order of the file: link by link."""
-    return [_link_error(parameter, c.get("determined") or {}) for parameter in c["parameters"]
-            if LINK_ERROR.fullmatch(parameter["name"])]
+    """In the order of the file: link by link; without uncertainties where the result is unreliable."""
+    found = [_link_error(parameter, c.get("determined") or {}) for parameter in c["parameters"]
+             if LINK_ERROR.fullmatch(parameter["name"])]
+    return found if c.is_reliable else [replace(each, u=0.0, U=0.0, k=None) for each in found]
 
 
 def _link_error(parameter: dict, determined: dict[str, str]) -> LinkError:

@@ -1,5 +1,6 @@
 """Numbers as GUM 7.2 writes them; the same rules as the text that scancal prints."""
 import math
+import re
 
 MINUS = "\N{MINUS SIGN}"
 
@@ -52,7 +53,14 @@ def percent(share: float | None) -> str:
 
 def p_value(p: float | None) -> str:
     """= 0.02, with its sign of relation; below 1e-16 it is not known better."""
-    return "= –" if p is None else "< 10⁻¹⁶" if p < 1e-16 else "= " + significant(p, 1)
+    return "= –" if p is None or math.isnan(p) else "< 10⁻¹⁶" if p < 1e-16 else "= " + significant(p, 1)
+
+
+def in_sentence(text: str) -> str:
+    """What the program says in plain letters as the page writes it: true minus signs, powers of ten, micrometres."""
+    text = re.sub(r"\b(\d+(?:[.,]\d+)?)e([+-]?\d+)\b",
+                  lambda found: ("" if found[1] == "1" else f"{found[1]} × ") + f"10{_superscript(int(found[2]))}", text)
+    return re.sub(r"\bum\b", "µm", re.sub(r"(?<![\w.,])-(?=\d)", MINUS, text))
 
 
 def length_unit(largest_mm: float) -> tuple[float, str]:

@@ -17,7 +17,7 @@ from language import Language
 TEMPLATES = Path(__file__).parent / "templates"
 
 # The order of the page. A section whose template renders to nothing (it has no data) takes no number.
-SECTIONS = ["verdict", "result", "links", "budget", "comparison", "residuals", "surface", "correlation",
+SECTIONS = ["verdict", "result", "procedure", "links", "budget", "comparison", "residuals", "surface", "correlation",
             "leave_one_out", "monte_carlo", "scene", "coverage_of_poses", "lengths", "volume", "considered",
             "certificate", "inputs"]
 
@@ -41,7 +41,7 @@ class Figures:
         svg = style.to_svg(drawing, name.replace("_", "-"), title, self._language)
         caption = Markup.escape(self._language(f"figure.{name}.caption", **captions))
         number = Markup.escape(self._language("figure.number", number=self._drawn))
-        return Markup(f'<figure id="figure-{name}">{svg}<figcaption><b>{number}</b> {caption}</figcaption></figure>')
+        return Markup(f'<figure id="figure-{name}"><div class="drawing">{svg}</div><figcaption><b>{number}</b> {caption}</figcaption></figure>')
 
 
 def render_page(calibration: Calibration, previous: Calibration | None, language: Language,
@@ -54,7 +54,7 @@ def render_page(calibration: Calibration, previous: Calibration | None, language
     html = environment.get_template("page.html").render(
         sections=[(name, Markup(body)) for name, body in rendered if body],
         **sections.content("head", calibration, previous, language),
-        fonts=Markup(font_faces(fonts)), css=Markup((TEMPLATES / "page.css").read_text(encoding="utf-8")))
+        page_number=Markup(_page_number(language)), fonts=Markup(font_faces(fonts)), css=Markup((TEMPLATES / "page.css").read_text(encoding="utf-8")))
     if sys.stderr.isatty():
         print("\r\033[K", end="", file=sys.stderr, flush=True)
     return html
@@ -78,6 +78,12 @@ def render_section(name: str, environment: jinja2.Environment) -> str:
     known = environment.globals
     content = sections.content(name, known["c"], known["previous"], known["t"])
     return environment.get_template(f"sections/{name}.html").render(content).strip()
+
+
+def _page_number(language: Language) -> str:
+    """Page n of N, as a style sheet says it."""
+    before, between, after = language("page.number", page="|", pages="|").split("|")
+    return f'"{before}" counter(page) "{between}" counter(pages) "{after}"'
 
 
 def _breakable(name: str) -> Markup:

@@ -8,24 +8,36 @@ import logging
 import os
 import re
 import subprocess
-from html import unescape
 from pathlib import Path
 
-from calibration import Complaint
+from administration import as_text, serial_numbers
+from calibration import Calibration, Complaint
+from language import Language
 from notation import shortened
 from output import write_whole
 
-# A foot with the name on every page: a sheet that is found alone can be put back. Not cut by text-overflow: there
+# A foot with name and numbers on every page: a sheet that is found alone can be put back. Not cut by text-overflow: there
 # WeasyPrint tells readers of the file that an ellipsis, here and everywhere, means the words that it stands for.
 _FOOT = """
 @page { @bottom-left { content: "%s"; font: 8pt Inter; color: #66727f; width: 85%%; margin-top: 6mm;
                        max-height: 1.5em; overflow: hidden; white-space: nowrap; }
         @bottom-right { margin-top: 6mm; max-height: 1.5em; } }
 """
-_LETTERS = 90  # of the name: as many as have room
+_LETTERS, _OF_NAME = 90, 44  # as many as have room, of which the name keeps some
 
 
-def print_page(html: str, file: Path) -> None:
+def foot(c: Calibration, t: Language) -> str:
+    """Of every sheet: the numbers of certificate and item, and the name."""
+    given = c.get("certificate")
+    numbers = {"certificate": as_text(given.get("identification")) if isinstance(given, dict) else "",
+               "serial": ", ".join(serial_numbers(c))}
+    told = ", ".join(t(f"page.foot_{key}", number=number) for key, number in numbers.items() if number)
+    told = shortened(told, _LETTERS - _OF_NAME - 2)
+    name = shortened(str(c.get("name") or c["model"]), _LETTERS - len(told) - 2 if told else _LETTERS)
+    return f"{told}; {name}" if told else name
+
+
+def print_page(html: str, foot_words: str, file: Path) -> None:
     """Raises Complaint where WeasyPrint or a letter's font is missing. Nothing is loaded from anywhere."""
     try:
         import weasyprint
@@ -40,13 +52,12 @@ def print_page(html: str, file: Path) -> None:
     archived = {"variant": "pdf/a-2b", "identifier": hashlib.sha256(html.encode()).hexdigest()[:32].encode()}
     if "pdf_variant" in getattr(weasyprint, "DEFAULT_OPTIONS", {}):  # since WeasyPrint 59, which passes over others
         archived = {f"pdf_{key}": value for key, value in archived.items()}
-    write_whole(file, document.write_pdf(stylesheets=[weasyprint.CSS(string=_foot(html))],
+    write_whole(file, document.write_pdf(stylesheets=[weasyprint.CSS(string=_foot(foot_words))],
                                          finisher=_without_interpolation, **archived))
 
 
-def _foot(html: str) -> str:
-    name = shortened(unescape(re.search("<h1>(.*?)</h1>", html, re.S)[1]), _LETTERS)
-    return _FOOT % "".join(c if c.isalnum() or c == " " else f"\\{ord(c):x} " for c in name)
+def _foot(words: str) -> str:
+    return _FOOT % "".join(c if c.isalnum() or c == " " else f"\\{ord(c):x} " for c in words)
 
 
 def _letters_without_font(html: str) -> str:

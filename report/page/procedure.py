@@ -1,7 +1,8 @@
 """What was done, in sentences: of the page's head and of the certificate."""
+import volume
 from calibration import Calibration
 from language import Language
-from notation import count, shortened
+from notation import count, shortened, significant
 
 FEW_NAMES, LONGEST_NAME = 6, 40
 COORDINATES = 3  # of a ball: what a robot's targets count as points
@@ -9,6 +10,11 @@ COORDINATES = 3  # of a ball: what a robot's targets count as points
 
 def sentences(c: Calibration, t: Language) -> list[str]:
     told = [_seen(c, t)] if c.get("targets") else []
+    found = volume.of(c)
+    if found:
+        ends = {f"{name}_{which}": t.number(significant(end(nodes), 3)) for name, nodes in zip(volume.READING, found.nodes)
+                for which, end in (("low", min), ("high", max))}
+        told.append(t("procedure.range", **ends))
     told += [_fitted(c, t), t(f"procedure.method.{c['model']}")]
     trials = (c.get("montecarlo") or {}).get("trials")
     if trials:

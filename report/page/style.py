@@ -1,7 +1,7 @@
 """One visual language: the colours, the type and the lines of every figure and of the page.
 
 Colours keep their order of lightness, so that they part for colour-blind readers and on grey printers; where two lines
-meet in a figure they differ in dash or marker, too. Maps are cividis, which was made for both.
+meet in a figure they differ in dash or marker, too. Maps are cividis, which was made for both; what has a sign goes from blue to red, which both tell apart, too.
 """
 import io
 import logging
@@ -28,6 +28,7 @@ SERIES = [PRIMARY, SECONDARY, "#5e9c4a", "#8b4a8b", "#c2a83e", "#4d4d4d"]
 DASHES = ["-", "--", "-.", ":", (0, (6, 2, 1, 2, 1, 2)), (0, (1, 1))]
 MARKERS = ["o", "s", "^", "D", "v", "P"]
 MAP = "cividis"
+DIVERGING = "RdBu_r"  # of what has a sign: white is nothing
 WIDTH = 6.9  # inches: the text width of an A4 page, at 96 pixels an inch that of the page's column
 
 # A name may be in any script: a letter that these fonts lack is drawn by the reader's.

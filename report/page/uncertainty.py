@@ -86,3 +86,34 @@ def apart_in_u(trials: dict) -> float:
     keys = ("low", "high", "gum_low", "gum_high", "u")
     low, high, gum_low, gum_high, u = (known(trials.get(key)) for key in keys)
     return max(abs(low - gum_low), abs(high - gum_high)) / u if u > 0 else math.nan
+
+
+def f_upper_tail(F: float, dof1: float, dof2: float) -> float:
+    """How often chance alone gives an F at least so large: the incomplete beta function as its continued fraction
+    (Press et al., Numerical Recipes, 6.4, by the method of Lentz)."""
+    a, b, x = dof2 / 2, dof1 / 2, dof2 / (dof2 + dof1 * F)
+    if not 0 < x < 1:
+        return math.nan if math.isnan(x) else float(x > 0)
+    if x > (a + 1) / (a + b + 2):  # where the fraction of the other side converges fast
+        return 1 - _incomplete_beta(b, a, 1 - x)
+    return _incomplete_beta(a, b, x)
+
+
+def _incomplete_beta(a: float, b: float, x: float) -> float:
+    tiny, c = 1e-300, 1.0
+    d = 1 / (1 - (a + b) * x / (a + 1) or tiny)
+    fraction = d
+    for m in range(1, 1000):
+        for factor in (m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)),
+                       -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))):
+            d, c = 1 / (1 + factor * d or tiny), 1 + factor / c or tiny
+            fraction *= c * d
+        if abs(c * d - 1) < 1e-14:
+            break
+    front = math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b) + a * math.log(x) + b * math.log1p(-x)
+    return math.exp(front) * fraction / a
+
+
+def raw_p(misfit: dict) -> float:
+    """Of one of "misfits" as if it had been the only test; its p is that of the strongest of all (Bonferroni)."""
+    return f_upper_tail(*(known(misfit.get(key)) for key in ("F", "dof1", "dof2")))

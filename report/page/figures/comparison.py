@@ -25,7 +25,8 @@ def caption(c: Calibration, t) -> dict[str, str]:
     rows = [row for row in methods(c) if row.get("cells")]
     far = any(_Offsets(name, c, rows).are_far for name in "MN")
     logarithmic = t("figure.comparison.logarithmic") if far else ""
-    return {"read": t("figure.comparison.turntable", logarithmic=logarithmic)}
+    which = "turntable" if c.is_reliable else "unreliable"
+    return {"read": t(f"figure.comparison.{which}", logarithmic=logarithmic)}
 
 
 class _Offsets:
@@ -35,7 +36,7 @@ class _Offsets:
         self.name = name
         values, us = (np.array([of(row, f"{name}/mm") for row in rows]) for of in (value, u))
         self.apart = values - values[-1]
-        self.U = ((c.parameter(name) or {}).get("k") or 2) * us
+        self.U = ((c.parameter(name) or {}).get("k") or 2) * us if c.is_reliable else np.full(len(rows), np.nan)
         self.half_step = np.array([value(row, "step/√12/um") for row in rows]) * math.sqrt(3) / 1000
         self.largest = np.max(np.nan_to_num(np.abs(self.apart) + np.fmax(np.nan_to_num(self.U),
                                                                          np.nan_to_num(self.half_step))))
@@ -50,7 +51,7 @@ def _offsets(c: Calibration, rows: list[dict], t) -> style.Figure | None:
     parameters = [offsets for offsets in parameters if np.isfinite(offsets.apart).any()]
     if not parameters:
         return None
-    figure, grid = style.new_figure(0.9 + 0.26 * len(rows), 1, len(parameters), squeeze=False, sharey=True)
+    figure, grid = style.new_figure(0.9 + 0.21 * len(rows), 1, len(parameters), squeeze=False, sharey=True)
     for axes, offsets in zip(grid.flat, parameters):
         _offset(axes, offsets, t)
     _method_names(grid.flat[0], rows, t)

@@ -28,10 +28,10 @@ def draw(c: Calibration, t) -> style.Figure | None:
 def caption(c: Calibration, t) -> dict[str, str]:
     names, by = moves(c)
     if len(c.estimated) == 2:
-        kind = "plane" if len(_region(c, np.ones(2))) else "no_region"
+        kind = "bare" if not c.is_reliable else "plane" if len(_region(c, np.ones(2))) else "no_region"
         left_out = _left_out(t, "names", MOST_NAMES, len(names))
     else:
-        kind, left_out = "dots", _left_out(t, "rows", MOST_ROWS, len(c.estimated))
+        kind, left_out = "dots" if c.is_reliable else "bare_dots", _left_out(t, "rows", MOST_ROWS, len(c.estimated))
     return {"how": t(f"figure.leave_one_out.{kind}"), "left_out": left_out}
 
 
@@ -40,7 +40,7 @@ def _left_out(t, what: str, most: int, number: int) -> str:
 
 
 def _plane(c: Calibration, names: list[str], by: np.ndarray, t) -> style.Figure:
-    figure, axes = style.new_figure(4.2)
+    figure, axes = style.new_figure(3.0)
     (fx, unit_x), (fy, unit_y) = (axis_unit(parameter) for parameter in c.estimated)
     scale = np.array([fx, fy])
     tips, U = by * scale, np.array([known(parameter.get("U")) for parameter in c.estimated]) * scale
@@ -68,7 +68,7 @@ def _plane(c: Calibration, names: list[str], by: np.ndarray, t) -> style.Figure:
 def _uncertainty(axes, c: Calibration, U: np.ndarray, scale: np.ndarray, t) -> tuple[np.ndarray, list]:
     """The box of value +- U of each and the region of both; points on their lines, and text, point and side
     of their names."""
-    if not np.isfinite(U).all():
+    if not np.isfinite(U).all() or not c.is_reliable:
         return np.empty((0, 2)), []
     percent = t.number(f"{c.coverage_percent:.4g}")
     axes.add_patch(Rectangle(-U, *(2 * U), facecolor=style.TERTIARY, alpha=0.35, lw=0, zorder=0.5))

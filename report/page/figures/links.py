@@ -36,7 +36,9 @@ def caption(c: Calibration, t) -> dict[str, str]:
     panels = [_rows(c, unit) for unit in links.UNITS]
     notes = {"no_held": any(len(_all_rows(c, unit)) > MOST_ROWS for unit in links.UNITS),
              "cut": any(_reach(rows) < _extents(rows).max(initial=0) for rows in panels)}
-    return {"coverage": t.number(f"{c.coverage_percent:.3g}"),
+    how = t("figure.links.intervals" if c.is_reliable else "figure.links.no_intervals",
+            coverage=t.number(f"{c.coverage_percent:.3g}"))
+    return {"how": how,
             "notes": " ".join(t(f"figure.links.{note}") for note, holds in notes.items() if holds)}
 
 

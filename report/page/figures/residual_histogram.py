@@ -15,7 +15,7 @@ def draw(c: Calibration, t) -> style.Figure | None:
     histogram = Histogram(scanned_targets(c))
     if not histogram.total:
         return None
-    figure, (left, right) = style.new_figure(2.9, 1, 2)
+    figure, (left, right) = style.new_figure(2.2, 1, 2)
     _density(left, histogram, t)
     _quantiles(right, histogram, t)
     return figure

@@ -6,17 +6,23 @@ from calibration import Calibration, Table
 from notation import length_unit, shortened
 from residuals import MOST_LINES, along_the_line, noise_of_mean, scanned_targets, with_table, worst
 
+COLUMNS = 3         # of panels
+LEAST_SCALE = 0.05  # of an autocorrelation: below it is nothing
+
 
 def draw(c: Calibration, t) -> style.Figure | None:
     targets = scanned_targets(c)
     parts = _parts(targets)
     if not parts:
         return None
-    figure, grid = style.new_figure(2.9, 1, len(parts), squeeze=False)
-    for part, axes in zip(parts, grid.flat):
-        part(axes, targets, t)
-    # One legend for both: the lines are of the same targets.
-    style.legend_above(figure, grid.flat[0], 3)
+    chosen = worst(with_table(targets, "cells"), MOST_LINES) if _by_place in parts else []
+    across = min(len(chosen), COLUMNS)
+    down = -(-len(chosen) // COLUMNS) if chosen else 1
+    figure = style.pyplot.figure(figsize=(style.WIDTH, 0.5 + 1.5 * down))
+    grid = figure.add_gridspec(down, across + (_by_lag in parts))
+    _by_place([figure.add_subplot(grid[k // COLUMNS, k % COLUMNS]) for k in range(len(chosen))], chosen, t)
+    if _by_lag in parts:
+        _by_lag(figure.add_subplot(grid[:, -1]), targets, t)
     return figure
 
 
@@ -33,17 +39,21 @@ def _parts(targets: list[dict]) -> list:
     return [part for part, has in ((_by_place, by_place), (_by_lag, by_lag)) if has]
 
 
-def _by_place(axes, targets: list[dict], t) -> None:
-    chosen = worst(with_table(targets, "cells"), MOST_LINES)
+def _by_place(panels: list, chosen: list[dict], t) -> None:
+    """A panel for each target, all on one scale."""
     lines = [along_the_line(Table(target["cells"])) for target in chosen]
-    factor, unit = length_unit(max(np.max(np.abs(mean), initial=0) for _, mean, _ in lines))
-    for (z, mean, points), target, look in zip(lines, chosen, _looks()):
-        axes.plot(z, factor * mean, label=shortened(target["name"]), **look)
-        axes.errorbar(z, factor * mean, 2 * factor * noise_of_mean(target, points), linestyle="none",
-                      ecolor=look["color"], elinewidth=0.7)
-    axes.axhline(0, color=style.MUTED, linewidth=0.7, linestyle="-", zorder=0)
-    axes.set_xlabel(t("figure.residual_line.z"))
-    axes.set_ylabel(t("figure.residual_line.mean", unit=unit))
+    factor, unit = length_unit(max((np.max(np.abs(mean), initial=0) for _, mean, _ in lines), default=0))
+    for k, (axes, (z, mean, points), target, look) in enumerate(zip(panels, lines, chosen, _looks())):
+        axes.errorbar(z, factor * mean, 2 * factor * noise_of_mean(target, points), **look, elinewidth=0.7)
+        axes.axhline(0, color=style.MUTED, linewidth=0.7, linestyle="-", zorder=0)
+        axes.set_title(shortened(target["name"], 16), fontsize=8)
+        axes.sharey(panels[0])
+        axes.locator_params(nbins=4)
+        axes.tick_params(labelleft=k % COLUMNS == 0)
+        if k == 0:
+            axes.set_ylabel(t("figure.residual_line.mean", unit=unit))
+        if k >= len(panels) - COLUMNS:
+            axes.set_xlabel(t("figure.residual_line.z"))
 
 
 def _by_lag(axes, targets: list[dict], t) -> None:
@@ -54,7 +64,9 @@ def _by_lag(axes, targets: list[dict], t) -> None:
     axes.axhline(0, color=style.MUTED, linewidth=0.7, linestyle="-", zorder=0)
     axes.set_xscale("log", base=2)
     axes.xaxis.set_major_formatter(style.plain_numbers(t))
-    axes.set_ylim(min(-0.2, axes.get_ylim()[0]), 1)
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, -LEAST_SCALE), max(high, LEAST_SCALE))
+    axes.legend(loc="upper right", handlelength=1.5, fontsize=7)
     axes.set_xlabel(t("figure.residual_line.lag"))
     axes.set_ylabel(t("figure.residual_line.autocorrelation"))
 

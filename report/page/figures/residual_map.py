@@ -21,11 +21,11 @@ def draw(c: Calibration, t) -> style.Figure | None:
     factor, unit = length_unit(limit)
     columns = panel_columns(len(targets))
     rows = math.ceil(len(targets) / columns)
-    figure, grid = style.new_figure(0.4 + (1.75 if rows < 3 else 1.45) * rows, rows, columns, squeeze=False)
+    figure, grid = style.new_figure(0.9 + (1.5 if rows < 3 else 1.25) * rows, rows, columns, squeeze=False)
     many = sum(map(len, tables)) > MOST_VECTORS
     for axes, target, table in zip(grid.flat, targets, tables):
         cells = PolyCollection(_rectangles(table), array=np.ma.masked_invalid(factor * table["residual"]),
-                               cmap=style.MAP, clim=(-factor * limit, factor * limit), edgecolors="face",
+                               cmap=style.DIVERGING, clim=(-factor * limit, factor * limit), edgecolors="face",
                                linewidths=0.3, rasterized=many)
         axes.add_collection(cells)
         axes.autoscale_view()
@@ -36,8 +36,8 @@ def draw(c: Calibration, t) -> style.Figure | None:
         axes.set_axis_off()
     figure.supxlabel(t("figure.residual_map.angle"), fontsize=9)
     figure.supylabel(t("figure.residual_map.z"), fontsize=9)
-    figure.colorbar(cells, ax=grid, label=t("figure.residual_map.residual", unit=unit), aspect=15 * rows,
-                    pad=0.02, extend="both" if saturated else "neither")
+    figure.colorbar(cells, ax=grid, label=t("figure.residual_map.residual", unit=unit), aspect=50,
+                    location="top", pad=0.02, fraction=0.05, extend="both" if saturated else "neither")
     return figure
 
 

@@ -9,6 +9,7 @@ from notation import length_unit, shortened
 from residuals import (MOST_LINES, MOST_PANELS, correlation_factor, panel_columns, scanned_targets,
                        white_noise_band, with_table, worst)
 
+COLUMNS = 3          # of autocorrelations
 MOST_VECTORS = 3000  # profiles: more are a picture
 
 
@@ -19,12 +20,14 @@ def draw(c: Calibration, t) -> style.Figure | None:
     correlated = with_table(worst(scanned_targets(c), MOST_LINES), "sweep_correlation")
     columns = panel_columns(len(targets))
     rows = math.ceil(len(targets) / columns)
-    heights = [(1.5 if rows < 3 else 1.25) * rows + 0.3] + ([2.2] if correlated else [])
+    below = math.ceil(len(correlated) / COLUMNS)
+    heights = [(1.3 if rows < 3 else 1.1) * rows + 0.3] + ([1.2 * below + 0.3] if correlated else [])
     figure = style.pyplot.figure(figsize=(style.WIDTH, sum(heights)))
     parts = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
     _sweeps(parts[0], parts[0].subplots(rows, columns, squeeze=False, sharey=True), targets, t)
     if correlated:
-        _correlations(parts[1].subplots(), correlated, t)
+        panels = parts[1].subplots(below, min(COLUMNS, len(correlated)), squeeze=False, sharey=True)
+        _correlations(panels, correlated, t)
     return figure
 
 
@@ -64,16 +67,21 @@ def _sweeps(part, grid, targets: list[dict], t) -> None:
     part.supylabel(t("figure.residual_sweep.mean", unit=unit), fontsize=9)
 
 
-def _correlations(axes, targets: list[dict], t) -> None:
-    fewest = min(target["profiles"] or len(Table(target.get("sweep"))) or 1 for target in targets)
-    band = white_noise_band(fewest)
-    axes.axhspan(-band, band, color=style.FAINT, linewidth=0, label=t("figure.residual_sweep.band"))
-    axes.axhline(0, color=style.MUTED, linewidth=0.7, linestyle="-")
-    for target, color, dash, marker in zip(targets, style.SERIES, style.DASHES, style.MARKERS):
+def _correlations(panels, targets: list[dict], t) -> None:
+    """A panel for each target, all on one scale."""
+    for k, (axes, target) in enumerate(zip(panels.flat, targets)):
         table = Table(target["sweep_correlation"])
+        band = white_noise_band(target["profiles"] or len(Table(target.get("sweep"))) or 1)
+        axes.axhspan(-band, band, color=style.FAINT, linewidth=0, label=t("figure.residual_sweep.band"))
+        axes.axhline(0, color=style.MUTED, linewidth=0.7, linestyle="-")
         after = table["lag"] > 0
-        axes.plot(table["lag"][after], table["correlation"][after], color=color, linestyle=dash,
-                  marker=marker, markersize=3, label=shortened(target["name"]))
-    axes.set_xlabel(t("figure.residual_sweep.lag"))
-    axes.set_ylabel(t("figure.residual_sweep.autocorrelation"))
-    axes.legend(loc="upper left", bbox_to_anchor=(1, 1))
+        axes.plot(table["lag"][after], table["correlation"][after], color=style.PRIMARY, linestyle="-", marker="o",
+                  markersize=2.5, linewidth=0.8)
+        axes.set_title(shortened(target["name"], 20), fontsize=8)
+        axes.locator_params(nbins=4)
+        if k == 0:
+            axes.set_ylabel(t("figure.residual_sweep.autocorrelation"))
+            axes.legend(loc="upper right", fontsize=7)
+    for axes in panels.flat[len(targets):]:
+        axes.set_axis_off()
+    panels.flat[0].figure.supxlabel(t("figure.residual_sweep.lag"), fontsize=9)

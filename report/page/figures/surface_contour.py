@@ -15,7 +15,7 @@ def draw(c: Calibration, t) -> style.Figure | None:
     surfaces = [surface for surface in (searched(c), near(c)) if surface]
     if not surfaces:
         return None
-    figure, grid = style.new_figure(3.8, 1, len(surfaces), squeeze=False)
+    figure, grid = style.new_figure(3.0, 1, len(surfaces), squeeze=False)
     for axes, surface in zip(grid.flat, surfaces):
         _contours(figure, axes, surface, unit_of_S(c), t)
         _points(axes, surface, c, t)
@@ -52,9 +52,10 @@ def caption(c: Calibration, t) -> dict[str, str]:
 
 
 def joint_region(c: Calibration) -> tuple[np.ndarray, float] | None:
-    """Covariance of M and N, and the factor of the joint region of all estimated parameters."""
+    """Covariance of M and N, and the factor of the joint region of all estimated parameters; of an unreliable result
+    none."""
     names, k = [parameter["name"] for parameter in c.estimated], (c.get("joint") or {}).get("k")
-    if not k or "M" not in names or "N" not in names or not c.get("covariance"):
+    if not c.is_reliable or not k or "M" not in names or "N" not in names or not c.get("covariance"):
         return None
     both = [names.index("M"), names.index("N")]
     covariance = c.covariance[np.ix_(both, both)]

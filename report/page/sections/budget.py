@@ -1,6 +1,6 @@
 """Lines of the budget as the tables show them."""
 from calibration import Calibration
-from figures.budget import MOST_PIECES, table_of_shares
+from figures.budget import MOST_BARS, MOST_PIECES, table_of_shares
 from uncertainty import axis_unit, known
 
 FEW_PARAMETERS = 2  # whose columns stand beside those of the sources
@@ -11,4 +11,5 @@ def content(c: Calibration, previous, t) -> dict[str, object]:
     few = len(c.estimated) <= FEW_PARAMETERS
     return {"lines": c.get("budget") or [], "few": few, "known": known,
             "units": [axis_unit(p) for p in c.estimated],
+            "drawn": MOST_BARS,
             "by_parameter": [] if few else table_of_shares(c, t, MOST_PIECES, NO_COLUMN)}

@@ -5,4 +5,7 @@ from language import Language
 
 
 def content(c: Calibration, previous: Calibration | None, t: Language) -> dict[str, object]:
-    return {"given": administration.rows(c.get("certificate"), t)}
+    given = c.get("certificate")
+    untraced = administration.without_certificate(given)
+    return {"blocks": administration.blocks(given, t), "signers": administration.signers(given),
+            "untraced": t("certificate.untraced", names=", ".join(untraced)) if untraced else ""}

@@ -7,6 +7,8 @@ from notation import concise, count, significant
 WIDTH = 66  # characters beside the names of the methods
 VALUES = ["M/mm", "N/mm", "ΔM/u", "ΔN/u", "tilt_x/mrad", "tilt_y/mrad"]  # in one table, in this order
 WHOLE = ["nodes, iter."]
+ALIKE = ["S/um", "plane rms/um", "held out/um"]  # of which a table has a sentence where they are
+SAME = 0.01  # part of the largest: what lies so close tells no method from another
 ROUGH = ["ΔM/u", "ΔN/u"]  # two digits are enough, as for single lengths
 
 
@@ -15,8 +17,21 @@ def content(c, previous, t) -> dict[str, object]:
     shown = [column for column in columns(rows) if not _says_nothing(column, rows)]
     notes = list(dict.fromkeys(row["note"] for row in rows if row.get("note")))
     tables = [_table(part, k == 0, rows, notes, t) for k, part in enumerate(_parts(shown, rows, t))]
-    return {"tables": tables, "notes": [(_mark(k), t.sentence(note)) for k, note in enumerate(notes)],
+    return {"tables": tables, "alike": _alike(rows, t), "notes": [(_mark(k), t.sentence(note)) for k, note in enumerate(notes)],
             "about": t(f"comparison.about.{c['model']}")}
+
+
+def _alike(rows: list[dict], t) -> str:
+    """What all methods say alike, in words."""
+    told = []
+    for column in ALIKE:
+        known = [value for row in rows if (value := cell(row, column).get("value")) is not None]
+        if known and max(known) - min(known) < SAME * max(known):
+            name, _, unit = column_title(column, t).replace("\u00a0", " ").partition(" / ")
+            least, most = (t.number(significant(end, 3)) for end in (min(known), max(known)))
+            told.append(t("comparison.alike.one" if least == most else "comparison.alike.range", name=name,
+                          least=least, most=most, unit=unit))
+    return t("comparison.alike.about", told=", ".join(told)) if told else ""
 
 
 def _says_nothing(column: str, rows: list[dict]) -> bool:
@@ -25,7 +40,12 @@ def _says_nothing(column: str, rows: list[dict]) -> bool:
     if column.startswith("u("):
         return any(cell(row, other).get("u") for row in rows for other in columns(rows)
                    if other.startswith(column[2:column.index(")")] + "/"))
-    return not any(value is not None for value in values) or column.startswith("tilt_") and not any(values)
+    known = [value for value in values if value is not None]
+    if column.startswith("step/") or column in WHOLE or column.isdecimal():  # in the name of the method; of its speed; among the known lengths
+        return True
+    if column.startswith("tilt_"):
+        return not any(values)
+    return not known or column in ALIKE and max(known) - min(known) < SAME * max(known)
 
 
 def _parts(shown: list[str], rows: list[dict], t) -> list[list[str]]:

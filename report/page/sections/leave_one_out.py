@@ -7,7 +7,7 @@ from calibration import Calibration
 from notation import MINUS, to_last_digit_of
 from uncertainty import FEW_PARAMETERS, axis_unit, known, moves, moves_in_u
 
-MOST_ROWS = 40
+MOST_ROWS, MOST_PARAMETERS = 40, 10
 
 
 def content(c: Calibration, previous, t) -> dict[str, object]:
@@ -37,8 +37,9 @@ def _by_parameter(c: Calibration, t) -> list[tuple[str, str, str, str]]:
         if np.isfinite(of).any():
             most = int(np.nanargmax(np.abs(of)))
             rows.append((p["name"], t.number(_in_u(of[most])), names[most],
-                         t.number(f"{math.sqrt(float(np.nanmean(of**2))):.2f}")))
-    return rows
+                         t.number(f"{math.sqrt(float(np.nanmean(of**2))):.2f}"), float(np.nanmax(np.abs(of)))))
+    farthest = sorted(rows, key=lambda row: -row[-1])[:MOST_PARAMETERS]
+    return [row[:-1] for row in rows if row in farthest]
 
 
 def _in_u(by: float) -> str:

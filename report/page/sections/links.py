@@ -10,7 +10,9 @@ _DEGREES = 180 / math.pi  # of a radian
 
 def content(c: Calibration, previous, t) -> dict[str, object]:
     errors = links.link_errors(c)
-    return {"rows": [_row(error, t) for error in errors],
+    shown = [error for error in errors if error.kind != "held" or error.value]
+    held = [error.name for error in errors if error not in shown]
+    return {"rows": [_row(error, t) for error in shown], "held": ", ".join(held),
             "has_nominal": any(error.nominal is not None for error in errors),
             "matrix": _matrix(c, t), "numbers": _hand_eye(c)}
 

@@ -7,7 +7,7 @@ _LENGTHS = ("mean", "u", "low", "high", "gum_low", "gum_high", "tolerance")
 
 
 def content(c: Calibration, previous, t) -> dict[str, object]:
-    found = c.get("montecarlo") or {}
+    found = (c.get("montecarlo") or {}) if c.is_reliable else {}  # it drew what the budget says, which is not believed
     rows = [_row(each, c.parameter(each["name"])) for each in found.get("parameters") or []
             if c.parameter(each["name"])]
     percent = t.number(f"{c.coverage_percent:.4g}")

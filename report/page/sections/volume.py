@@ -5,7 +5,7 @@ from notation import significant
 
 
 def content(c: Calibration, previous, t) -> dict[str, str]:
-    found = volume.of(c)
+    found = volume.of(c) if c.is_reliable else None  # else nobody knows it
     return {"words": _words(found, t) if found else "", "percent": t.number(f"{c.coverage_percent:.4g}")}
 
 

@@ -15,8 +15,8 @@ def certified(**changes) -> Calibration:
     return calibration(certificate=copy.deepcopy(CERTIFICATE), **changes)
 
 
-def written(c: Calibration, language: str = "en") -> str:
-    return dcc.certificate(c, Language(language, c))
+def written(c: Calibration, language: str = "en", previous: Calibration | None = None) -> str:
+    return dcc.certificate(c, previous, Language(language, c, previous))
 
 
 def tree(xml: str) -> ElementTree.Element:

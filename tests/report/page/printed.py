@@ -22,7 +22,7 @@ class Printed:
         return ([f"page {k + 1}: {size}" for k, size in enumerate(sizes)
                  if any(abs(float(length) - of_a4) > 1 for length, of_a4 in zip(size, A4))] +
                 [f"page {k + 1} has no number" for k, letters in enumerate(self.pages)
-                 if f"{k + 1}/{len(self.pages)}" not in letters])
+                 if f"Page{k + 1}of{len(self.pages)}" not in letters])
 
     def lost(self, browser: Browser) -> list[str]:
         """Words of the open page that are on no sheet; of long words, which break, the start."""

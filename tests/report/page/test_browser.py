@@ -15,8 +15,7 @@ WIDTHS = [1280, 390]
 WIDE = ["sample", "robot", "named", "named_robot"]
 MOST_BYTES = 3_000_000
 OF_ALL = ["budget", "scene"]
-OF_SCANS = ["comparison", "residual_map", "residual_sweep", "residual_line", "residual_histogram", "surface_contour",
-            "surface_3d"]
+OF_SCANS = ["comparison", "residual_map", "residual_sweep", "residual_line", "residual_histogram", "surface_contour"]
 OF_ROBOTS = ["correlation", "links", "robot_residuals", "joints", "workspace", "lengths"]  # two numbers need no matrix
 FIGURES = {"sample": OF_ALL + OF_SCANS + ["leave_one_out", "monte_carlo"], "bad": OF_ALL + OF_SCANS,
            "many_targets": OF_ALL + OF_SCANS + ["leave_one_out", "volume"],
@@ -134,7 +133,7 @@ class PageTest(InBrowser):
         self.assertNotIn("figure-budget: one | figure-budget: two", self.browser.texts_on_texts())
 
     def test_a_figure_that_is_not_drawn_is_seen(self):
-        figure = '<figure id="figure-budget">'
+        figure = '<figure id="figure-budget"><div class="drawing">'
         self.open_changed(lambda html: html.replace(figure + "<svg", figure + "<p", 1))
         self.assertNotIn("figure-budget", self.browser.figures())
         self.assertIn("figure-scene", self.browser.figures())

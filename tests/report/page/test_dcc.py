@@ -47,6 +47,15 @@ def with_given(value: object, *path: str | int) -> Calibration:
     return c
 
 
+def as_found_scene() -> Calibration:
+    """A year before, of a certificate of its own."""
+    c = certified(name="plate, last year")
+    c["certificate"] |= {"identification": "K-2025-7", "performed": {"begin": "2025-11-02", "end": "2025-11-02"}}
+    c["parameters"][0] = c["parameters"][0] | {"value": 122.9}
+    c.sha256 = "e" * 64
+    return c
+
+
 class SchemaTest(unittest.TestCase):
     """Skipped aloud without the schema, which is no part of the project."""
 
@@ -70,6 +79,7 @@ class SchemaTest(unittest.TestCase):
             for c in (certified(),
                       certified(warnings=[warning, "another"], montecarlo={"trials": 1000}, budget=None)):
                 self.assertEqual(self.wrong(written(c, language)), "")
+                self.assertEqual(self.wrong(written(c, language, previous=as_found_scene())), "")
 
     def test_valid_with_the_least_that_is_demanded(self):
         certificate = {"identification": 7, "country": "AT",
@@ -109,11 +119,11 @@ class SchemaTest(unittest.TestCase):
         for was, becomes in (
                 ("<dcc:endPerformanceDate>2026-11-03</dcc:endPerformanceDate>", ""),  # a mandatory element
                 ("<dcc:respPersons>", "<dcc:respPersons><dcc:respPerson/>"),
-                ("<si:unit>\\metre</si:unit>", "<si:unit><si:metre/></si:unit>"),  # no text as unit
-                ("<si:unit>\\metre</si:unit>", ""),
+                ("<si:unit>\\milli\\metre</si:unit>", "<si:unit><si:metre/></si:unit>"),  # no text as unit
+                ("<si:unit>\\milli\\metre</si:unit>", ""),
                 ("<si:coverageProbability>0.95", "<si:coverageProbability>95"),
                 ("<si:coverageFactor>2.04", "<si:coverageFactor>0.5"),
-                ("<si:value>0.12300214", "<si:value>0,12300214"),
+                ("<si:value>123.002<", "<si:value>123,002<"),
                 ("2026-11-02<", "02.11.2026<"),
                 ('schemaVersion="3.3.0"', 'schemaVersion="3.2.0"')):
             self.assertIn(was, xml)
@@ -199,7 +209,7 @@ class RefusalTest(unittest.TestCase):
             file.write_text("old")
             with mock.patch("os.replace", side_effect=OSError(28, "No space left on device")):
                 with self.assertRaises(Complaint):
-                    dcc.write_certificate(certified(), Language("en"), file)
+                    dcc.write_certificate(certified(), None, Language("en"), file)
             self.assertEqual(file.read_text(), "old")
             self.assertEqual(len(list(Path(folder).iterdir())), 1)
 

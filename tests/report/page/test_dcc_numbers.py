@@ -1,57 +1,56 @@
-"""A Digital Calibration Certificate holds the numbers of calibration.json, to the last digit, and nothing invented."""
+"""A Digital Calibration Certificate holds the numbers of calibration.json, results to their digits, and nothing invented."""
 import unittest
 from decimal import Decimal
 
 from certificates import NAMES, certified, texts, tree, written
 import dcc
+from test_dcc import as_found_scene
 from synthetic import calibration, said
 
-POWERS = {"mm": -3, "rad": 0, "1": 0}
+UNITS = {"mm": "\\milli\\metre", "rad": "\\radian"}
 
 
 class NumbersTest(unittest.TestCase):
-    """Each as Decimal: equal to the last digit of what calibration.json holds."""
-
     @classmethod
     def setUpClass(cls):
         cls.calibration = certified()
         cls.root = tree(written(cls.calibration))
 
-    def exact(self, value: float, *units: str) -> Decimal:
-        return Decimal(repr(value)).scaleb(sum(POWERS[unit] for unit in units))
+    def exact(self, value: float) -> Decimal:
+        return Decimal(repr(value))
 
-    def test_values_expanded_uncertainties_and_factors(self):
+    def test_values_end_where_U_does_with_two_digits_and_k_has_three(self):
         quantities = self.root.findall(".//dcc:quantity[@refType='basic_measuredValue']", NAMES)
-        self.assertEqual(len(quantities), 3)
-        for quantity, parameter in zip(quantities, self.calibration.estimated):
-            unit = {"mm": "\\metre", "rad": "\\radian"}[parameter["unit"]]
-            self.assertEqual(quantity.findtext("si:real/si:label", None, NAMES), parameter["name"])
-            self.assertEqual(quantity.findtext("si:real/si:unit", None, NAMES), unit)
-            for path, key, of in (("si:real/si:value", "value", parameter["unit"]),
-                                  (".//si:valueExpandedMU", "U", parameter["unit"]),
-                                  (".//si:coverageFactor", "k", "1")):
-                self.assertEqual(Decimal(quantity.findtext(path, None, NAMES)),
-                                 self.exact(parameter[key], of))
-            self.assertEqual(quantity.findtext(".//si:coverageProbability", None, NAMES), "0.95")
-            u, dof = quantity.findall("dcc:measurementMetaData//si:real", NAMES)
-            self.assertEqual(Decimal(u.findtext("si:value", None, NAMES)),
-                             self.exact(parameter["u"], parameter["unit"]))
-            self.assertEqual(u.findtext("si:unit", None, NAMES), unit)
-            self.assertEqual(Decimal(dof.findtext("si:value", None, NAMES)), Decimal(repr(parameter["dof"])))
+        told = [[quantity.findtext(path, None, NAMES) for path in (
+            "si:real/si:label", "si:real/si:value", "si:real/si:unit", ".//si:valueExpandedMU", ".//si:coverageFactor",
+            ".//si:coverageProbability")] for quantity in quantities]
+        self.assertEqual(told, [["M", "123.002", UNITS["mm"], "0.011", "2.04", "0.95"],
+                                ["N", "408.988", UNITS["mm"], "0.027", "2.04", "0.95"],
+                                ["tilt_x", "-0.0001235", UNITS["rad"], "0.0000024", "2.04", "0.95"]])
+        u, dof = quantities[0].findall("dcc:measurementMetaData//si:real", NAMES)
+        self.assertEqual((u.findtext("si:value", None, NAMES), u.findtext("si:unit", None, NAMES)),
+                         ("0.0054", UNITS["mm"]))
+        self.assertEqual(dof.findtext("si:value", None, NAMES), "31")
+
+    def test_rounding(self):
+        for value, digits, expected in ((0.0996, 2, "0.10"), (0.0994, 2, "0.099"), (1.96463, 3, "1.96"),
+                                        (12.7062, 3, "12.7"), (0, 2, "0"), (2.5e17, 2, "2.5E+17")):
+            self.assertEqual(dcc.rounded(value, digits), expected)
+        for U, value, expected in ((0.0996, 123.456, "123.46"), (0.011, 122.9999, "123.000"), (14.0, 1234.5, "1234")):
+            self.assertEqual(dcc.to_last_digit_of(U, value), expected)
 
     def test_the_ellipsoid(self):
         region = self.root.find(".//si:realList", NAMES)
         self.assertEqual(texts(region, "si:real/si:label"), ["M", "N", "tilt_x"])
         self.assertEqual([Decimal(text) for text in texts(region, "si:real/si:value")],
-                         [self.exact(p["value"], p["unit"]) for p in self.calibration.estimated])
+                         [self.exact(p["value"]) for p in self.calibration.estimated])
         columns = region.findall(".//si:column", NAMES)
         units = [parameter["unit"] for parameter in self.calibration.estimated]
-        signs = {"mm": "\\metre", "rad": "\\radian"}
         for j, column in enumerate(columns):
             for i, element in enumerate(column.findall("si:covariance", NAMES)):
                 self.assertEqual(Decimal(element.findtext("si:value", None, NAMES)),
-                                 self.exact(self.calibration["covariance"][i][j], units[i], units[j]))
-                self.assertEqual(element.findtext("si:unit", None, NAMES), signs[units[i]] + signs[units[j]])
+                                 self.exact(self.calibration["covariance"][i][j]))
+                self.assertEqual(element.findtext("si:unit", None, NAMES), UNITS[units[i]] + UNITS[units[j]])
         self.assertEqual([len(column) for column in columns], [3, 3, 3])
         self.assertEqual(texts(region, ".//si:coverageFactor"), ["2.93"])
 
@@ -59,19 +58,19 @@ class NumbersTest(unittest.TestCase):
         line = self.root.findall(".//dcc:list", NAMES)[1]
         self.assertEqual(texts(line, "dcc:name/dcc:content"), ["scale_y"])
         self.assertEqual([Decimal(text) for text in texts(line, "dcc:quantity//si:value")],
-                         [Decimal("0.0001"), Decimal("0.000002"), Decimal("0.000001"), Decimal(0)])
-        self.assertEqual(texts(line, "dcc:quantity//si:unit"), ["\\one", "\\metre", "\\metre", "\\radian"])
+                         [Decimal("0.0001"), Decimal("0.002"), Decimal("0.001"), Decimal(0)])
+        self.assertEqual(texts(line, "dcc:quantity//si:unit"), ["\\one", UNITS["mm"], UNITS["mm"], UNITS["rad"]])
 
     def test_a_number_keeps_every_digit(self):
         for value in (0.1 + 0.2, 123.00704315820686, 5e-324, 1.7976931348623157e308, -2.5, 7, 1e22):
-            self.assertEqual(Decimal(dcc.number(value, -3)) * 1000, Decimal(repr(value)))
+            self.assertEqual(Decimal(dcc.number(value)), Decimal(repr(value)))
             self.assertEqual(float(dcc.number(value)), value)
 
     def test_a_quantity_without_a_unit(self):
         c = certified()
         c["parameters"][2]["unit"] = "1"
         units = texts(tree(written(c)), ".//si:ellipsoidalRegion//si:unit")
-        self.assertEqual(units[2], "\\metre")
+        self.assertEqual(units[2], "\\milli\\metre")
         self.assertEqual(units[-1], "\\one")
 
     def test_without_end_of_the_degrees_of_freedom(self):
@@ -83,6 +82,32 @@ class NumbersTest(unittest.TestCase):
 
 
 class ContentTest(unittest.TestCase):
+    def test_the_environment(self):
+        conditions = tree(written(certified())).findall(".//dcc:influenceCondition", NAMES)
+        self.assertEqual([(texts(each, "dcc:name/dcc:content"), texts(each, "dcc:data/dcc:text/dcc:content"))
+                          for each in conditions], [(["temperature"], ["20.1 °C ± 0.3 K"])])
+        c = certified()
+        c["certificate"]["conditions"] = "quiet"
+        self.assertEqual(texts(tree(written(c)), ".//dcc:influenceCondition/dcc:name/dcc:content"), ["environment"])
+        del c["certificate"]["conditions"]
+        self.assertEqual(tree(written(c)).findall(".//dcc:influenceConditions", NAMES), [])
+
+    def test_as_found(self):
+        lines = [each for each in tree(written(certified(), previous=as_found_scene())).findall(".//dcc:list", NAMES)
+                 if each.findall("dcc:quantity", NAMES)[0].get("refType") == "basic_measuredValue"]
+        self.assertEqual([texts(each, "dcc:quantity//si:value") for each in lines],
+                         [["122.900", "0.102", "6.6"], ["408.988", "0.000", "0.0"], ["-0.0001235", "0.0000000", "0.0"]])
+        self.assertEqual([texts(each, "dcc:description/dcc:content") for each in lines],
+                         [["changed"], ["no change shown"], ["no change shown"]])
+        shown = " ".join(tree(written(certified(), previous=as_found_scene())).itertext())
+        for text in ("K-2025-7, 2025-11-02, plate, last year", "Decision rule", "Both use the same measurements"):
+            self.assertIn(text, shown)
+        self.assertNotIn("Decision rule", written(certified()))
+
+    def test_influences_that_the_data_cannot_exclude(self):
+        misfit = calibration()["misfits"][0] | {"moves": {"M": 0.03}}
+        self.assertIn("neither show nor exclude: tilt_y", written(certified(misfits=[misfit])))
+
     def test_software_methods_hashes(self):
         root = tree(written(certified(montecarlo={"trials": 1000})))
         self.assertEqual(texts(root, ".//dcc:usedSoftware/dcc:software/dcc:release"), ["0.1.0"])

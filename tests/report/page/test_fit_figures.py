@@ -11,7 +11,7 @@ from language import Language
 
 EN, DE = Language("en"), Language("de")
 FIGURES = ["comparison", "residual_map", "residual_sweep", "residual_line", "residual_histogram",
-           "surface_contour", "surface_3d"]
+           "surface_contour"]
 
 
 class DrawingTest(unittest.TestCase):

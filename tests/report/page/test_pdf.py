@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pages
 from printed import Printed
+from synthetic import CERTIFICATE
 
 
 def _without_compression(file: Path) -> bytes:
@@ -31,6 +32,21 @@ class PdfTest(unittest.TestCase):
             name = re.sub(r"\s", "", json.loads(pages.calibration(scene).read_text())["name"])
             without = [k for k, letters in enumerate(Printed(pages.pdf(scene)).pages) if name[:40] not in letters]
             self.assertEqual(without, [], scene)  # of a long one more has no room
+
+    def test_every_sheet_has_the_numbers_of_certificate_and_item(self):
+        found = json.loads(pages.calibration("sample").read_text()) | {"certificate": CERTIFICATE}
+        file = pages.folder() / "numbers.json"
+        file.write_text(json.dumps(found))
+        pages.report(file, f"--pdf={file.with_suffix('.pdf')}")
+        sheets = Printed(file.with_suffix(".pdf")).pages
+        for k, letters in enumerate(sheets):
+            self.assertIn("CertificateK-2026-0815,serialnumber007;simulatedplate,3placements,seed1", letters)
+            self.assertIn(f"Page{k + 1}of{len(sheets)}", letters)
+        self.assertIn("Endofthereport.", sheets[-1])
+
+    def test_is_short(self):
+        for scene, most in (("sample", 8), ("robot", 11)):  # of the sample with its Monte Carlo
+            self.assertLessEqual(len(Printed(pages.pdf(scene)).pages), most, scene)
 
     def test_names_are_not_read_as_rules_of_style(self):
         found = json.loads(pages.calibration("sample").read_text()) | {"name": 'var(--evil) "; } h1 { font: 9px x'}

@@ -6,9 +6,10 @@ import unittest
 
 import numpy as np
 
-from synthetic import calibration, estimated, text_of
+from synthetic import CERTIFICATE, calibration, estimated, text_of
 import as_found
-from language import TEXTS
+import page
+from language import TEXTS, Language
 
 
 def keys(found, left) -> list[str]:
@@ -117,7 +118,9 @@ class DoubtsTest(unittest.TestCase):
                  for number in ("7", "8")]
         self.assertIn("item", keys(earlier(certificate=items[0]), calibration(certificate=items[1])))
         self.assertEqual(keys(earlier(certificate=items[0]), calibration(certificate=items[0])), [])
-        self.assertEqual(keys(earlier(certificate=items[0]), calibration(certificate="none")), [])
+        for nothing in ("none", {}, {"item": {"name": "x"}}):  # nobody knows that it is the same
+            told = as_found.doubts(earlier(certificate=items[0]), calibration(certificate=nothing))
+            self.assertEqual(told, [as_found.Doubt("item_of_one", ("7",))])
 
     def test_unreliable_ones(self):
         self.assertEqual(keys(earlier(status="unreliable"), calibration()), ["found_unreliable"])
@@ -127,7 +130,11 @@ class DoubtsTest(unittest.TestCase):
         held = with_parameter(earlier(), 2, role="hold", value=0.0)
         self.assertEqual(as_found.doubts(held, calibration()), [as_found.Doubt("roles", ("tilt_x",))])
         elsewhere = with_parameter(earlier(), 3, value=0.001)
-        self.assertEqual(as_found.doubts(elsewhere, calibration()), [as_found.Doubt("roles", ("tilt_y",))])
+        self.assertEqual(as_found.doubts(elsewhere, calibration()), [as_found.Doubt("values", ("tilt_y",))])
+        nothing = with_parameter(earlier(), 3, value=None)  # at 0, as the other one says in a number
+        self.assertEqual(as_found.doubts(nothing, calibration()), [])
+        considered = with_parameter(earlier(), 3, role="consider", u=1e-4)
+        self.assertEqual(as_found.doubts(considered, calibration()), [as_found.Doubt("considered", ("tilt_y",))])
         fewer = earlier(parameters=calibration()["parameters"][:4])
         self.assertEqual(as_found.doubts(fewer, calibration()), [as_found.Doubt("missing", ("scale_y",))])
         other = with_parameter(earlier(), 0, nominal=120.0)
@@ -138,24 +145,50 @@ class WordsTest(unittest.TestCase):
     def test_both_values_change_and_meaning(self):
         found = with_parameter(earlier(), 0, value=122.9, u=0.0054)
         shown = text_of("result", calibration(), found)
-        self.assertIn("As found: plate, last year", shown)
+        self.assertIn("As found plate, last year – – – As left plate – – –", shown)
         self.assertIn("M / mm 122.900 ± 0.011 123.002 ± 0.011 0.1021 6.6 changed", shown)
         self.assertIn("N / mm 408.988 ± 0.027 408.988 ± 0.027 0.000 0.0 no change shown", shown)
 
     def test_every_doubt_has_words_in_every_language(self):
         found = earlier(model="flange-ball", residual="plane", status="unreliable",
                         certificate={"item": {"identifications": [{"value": 1}]}})
-        found["parameters"] = [estimated("M", 1.0, 0.1, nominal=5.0), *calibration()["parameters"][3:]]
+        held = {"name": "N", "unit": "mm", "role": "hold", "value": 409.0}
+        found["parameters"] = [estimated("M", 1.0, 0.1, nominal=5.0), *calibration()["parameters"][3:], held]
         found["parameters"][1] = found["parameters"][1] | {"value": 7.0}
         found["inputs"], found["budget"] = calibration()["inputs"], calibration()["budget"]
         left = calibration(status="unreliable", certificate={"item": {"identifications": [{"value": 2}]}})
         found.sha256 = left.sha256
         words = tomllib.loads((TEXTS / "en" / "result.toml").read_text(encoding="utf-8"))["as_found"]["doubt"]
-        self.assertEqual(keys(found, left), list(words))
+        self.assertEqual(keys(found, left), [key for key in words if key not in ("item_of_one", "considered")])
+        for key in ("item_of_one", "considered"):
+            self.assertIn("{names}", words[key])
         for language, about in (("en", "is doubtful"), ("de", "zweifelhaft")):
             shown = text_of("result", left, found, language)
             self.assertIn(about, shown)
             self.assertIn("turntable", shown)
+
+    def test_dates_and_certificates_of_both(self):
+        found = earlier(certificate={"identification": "K-1", "performed": {"begin": "2025-10-01"},
+                                     "item": {"identifications": [{"value": "007"}]}})
+        shown = text_of("result", calibration(certificate=CERTIFICATE), found)
+        self.assertIn("As found plate, last year K-1 2025-10-01 007 As left plate K-2026-0815 2026-11-02 to 2026-11-03 "
+                      "007", shown)
+
+    def test_a_line_of_it_on_the_first_page(self):
+        def line(found, left=None, language="en"):
+            left = left or calibration()
+            return page.sections.content("head", left, found, Language(language, left, found))["as_found"]
+        self.assertEqual(line(earlier()), "As found: no change beyond the expanded uncertainties.")
+        self.assertEqual(line(with_parameter(earlier(), 0, value=122.9)),
+                         "Against as found 1 of 3 quantities have changed, most of all M (E_n\u00a0=\u00a06.6).")
+        self.assertIn("doubtful", line(calibration()))
+        self.assertIn("cannot be said", line(earlier(status="unreliable")))
+
+    def test_of_an_unreliable_one_no_E_n_and_no_U(self):
+        shown = text_of("result", calibration(), earlier(status="unreliable"))
+        table = shown.split("Meaning")[1].split("E_n")[0]
+        self.assertIn("M / mm 123.002", table)
+        self.assertNotRegex(table, "±|changed|no change")
 
     def test_many_names_are_cut(self):
         found = earlier()

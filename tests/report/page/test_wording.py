@@ -4,9 +4,11 @@ import re
 import unittest
 
 from synthetic import CERTIFICATE, calibration, estimated, said, text_of
+from uncertainty_scenes import whole
 import administration
 import page
 import procedure
+import uncertainty
 from language import Language
 
 EN, DE = Language("en"), Language("de")
@@ -35,8 +37,9 @@ class VerdictTest(unittest.TestCase):
 
     def test_every_warning_and_every_reason_in_words(self):
         shown = text_of("verdict", calibration(warnings=[SENTENCE]))
-        self.assertIn("but it comes with these reservations", shown)
+        self.assertIn("but it comes with this reservation:", shown)
         self.assertNotIn("speaks against", shown)
+        self.assertIn("with these reservations:", text_of("verdict", calibration(warnings=[SENTENCE, "two"])))
         self.assertIn(SENTENCE, shown)
         shown = text_of("verdict",
                         calibration(status="unreliable", unreliable=["first", "second"], warnings=["third"]))
@@ -67,7 +70,7 @@ class VerdictTest(unittest.TestCase):
         shown = text_of("verdict", calibration())
         self.assertIn("F = 4.36 with 189 and 17 946 degrees of freedom, p < 10⁻¹⁶); errors common to a",
                       shown)
-        self.assertIn("ask most for tilt_y (F = 1.20, p = 0.3), no more than chance gives", shown)
+        self.assertIn("ask most for tilt_y (F = 1.20; p = 0.3 by itself, p = 0.3 as the smallest of 1 tests), no more than chance gives", shown)
         agreeing = {"F": 1.06, "dof1": 189.0, "dof2": 17946.0, "p": 0.2}
         self.assertIn("no more than within them", text_of("verdict", calibration(lack_of_fit=agreeing)))
         equal = [{"source": "residuals, clustered by view", "type": "A"}]
@@ -78,13 +81,104 @@ class VerdictTest(unittest.TestCase):
         self.assertNotIn("no more than chance", text_of("verdict", calibration(misfits=misfits)))
 
 
+    def test_influences_that_would_move_it_by_more_than_U_are_named(self):
+        """Of which the residuals ask no more than chance does: neither shown nor excluded."""
+        misfit = calibration()["misfits"][0] | {"moves": {"M": 4.4 * 0.0054, "N": 0.001, "tilt_x": 0.0}}
+        shown = text_of("verdict", calibration(misfits=[misfit]))
+        self.assertIn("neither show nor exclude: tilt_y (M by 4.4 u)", shown)
+        self.assertIn("they cannot exclude what would move it by more than U", shown)
+        for within in (misfit | {"moves": {"M": 2.0 * 0.0054}}, misfit | {"p": 1e-9}, misfit | {"considered": True}):
+            self.assertNotIn("nor exclude", text_of("verdict", calibration(misfits=[within])), within)
+        many = [misfit | {"source": f"form_{k}"} for k in range(5)]
+        self.assertIn("and 2 more, as far", text_of("verdict", calibration(misfits=many)))
+
+    def test_moves_without_one_target_are_held_against_chance_or_doubted(self):
+        without = [{"without": name, "value": {}} for name in ("left", "right", "top")]
+        self.assertIn("with 3 of them by no more than independent views make of it by chance",
+                      text_of("verdict", calibration(jackknife=without)))
+        said_so = [{"id": "solver.targets_disagree", "en": SENTENCE, "de": GERMAN}]
+        self.assertNotIn("by chance", text_of("verdict", calibration(jackknife=without, messages=said_so)))
+
+    def test_numbers_in_sentences_are_written_as_on_the_page(self):
+        told = "moves by -0.22 mm (F = 64.3, p < 1e-16); 6e+06 nodes, 10 um, encoder-1, 3-4"
+        self.assertIn("moves by −0.22 mm (F = 64.3, p < 10⁻¹⁶); 6 × 10⁶ nodes, 10 µm, encoder-1, 3-4",
+                      text_of("verdict", calibration(warnings=[told])))
+
+
+class FirstScreenTest(unittest.TestCase):
+    def head(self, c, previous=None, language="en"):
+        return page.sections.content("head", c, previous, Language(language, c, previous))
+
+    def test_value_and_U_with_k_and_coverage_of_every_quantity(self):
+        told = self.head(calibration())
+        self.assertEqual([(each["name"], each["result"], each["k"]) for each in told["quantities"]],
+                         [("M", "(123.002 ± 0.011) mm", "2.04"), ("N", "(408.988 ± 0.027) mm", "2.04"),
+                          ("tilt_x", "(−0.0001235 ± 2.4 × 10⁻⁶) rad", "2.04")])
+        self.assertEqual(told["percent"], "95")
+        self.assertIn("along X", told["quantities"][0]["meaning"])
+        self.assertEqual(self.head(calibration(), language="de")["quantities"][0]["result"], "(123,002 ± 0,011) mm")
+        bare = calibration(parameters=[{"name": "M", "unit": "mm", "role": "estimate", "value": 123.0}])
+        self.assertEqual(self.head(bare)["quantities"][0]["result"], "123.000 mm")
+
+    def test_of_a_robot_the_hand_eye_and_where_the_rest_stands(self):
+        told = self.head(robot())
+        self.assertEqual([each["name"] for each in told["quantities"]], ["hand_eye_x", "hand_eye_rx"])
+        self.assertEqual(told["elsewhere"], 12)
+
+    def test_who_what_which_and_when_and_what_of_it_is_missing(self):
+        told = self.head(calibration(certificate=CERTIFICATE))
+        self.assertIn(("Serial number", "007"), told["identification"])
+        self.assertIn(("Performed", "2026-11-02 to 2026-11-03"), told["identification"])
+        self.assertIn(("Certificate", "K-2026-0815"), told["identification"])
+        self.assertEqual(told["missing"], "")
+        for nothing in (None, {}, "text", {"item": "x", "performed": {"begin": None}},
+                        {"item": {"identifications": "7"}}):
+            told = self.head(calibration(certificate=nothing) if nothing is not None else calibration())
+            self.assertEqual(told["identification"], [])
+            self.assertIn("item, serial number, date, laboratory.", told["missing"])
+
+    def test_status_in_one_line(self):
+        only_a = calibration()["budget"][:1]
+        for c, line, color in (
+                (calibration(), "Status: ok. Nothing", "ok"),
+                (calibration(budget=only_a), "repeatability and fit only. Not a traceable", "with_warnings"),
+                (calibration(warnings=["a"]), "with one reservation", "with_warnings"),
+                (calibration(warnings=["a", "b"]), "with 2 reservations", "with_warnings"),
+                (calibration(status="unreliable"), "Do not rely", "unreliable")):
+            self.assertIn(line, self.head(c)["status_line"])
+            self.assertEqual(self.head(c)["status"], color)
+
+
+class UnreliableTest(unittest.TestCase):
+    """Nobody may read a promise under it."""
+    JACKKNIFE = [{"without": name, "value": {"M": M, "N": 408.0}} for name, M in (("left", 121.9), ("right", 123.8))]
+
+    def test_where_it_goes_without_one_target_in_place_of_U(self):
+        c = calibration(status="unreliable", jackknife=self.JACKKNIFE)
+        told = page.sections.content("head", c, None, EN)["quantities"]
+        self.assertEqual((told[0]["result"], told[0]["k"]), ("123.0 mm", "121.9 to 123.8 mm"))
+        self.assertEqual(told[2]["k"], "–")  # nobody knows of tilt_x
+
+    def test_no_section_has_U_or_its_probability(self):
+        c = whole(2)
+        c["status"] = "unreliable"
+        for section in ("verdict", "result", "leave_one_out", "monte_carlo", "volume", "comparison"):
+            shown = text_of(section, c)
+            self.assertNotIn("95 %", shown, section)
+            self.assertNotRegex(shown, r"\bU\b", section)
+        self.assertEqual(text_of("volume", c) + text_of("monte_carlo", c), "")
+
+    def test_links_without_intervals(self):
+        shown = text_of("links", robot(status="unreliable"))
+        self.assertIn("nobody knows how wrong they are", shown)
+        self.assertNotIn("95 %", shown)
+        self.assertNotIn("(10)", shown)
+
+
 class ResultTest(unittest.TestCase):
-    def test_value_u_expanded_u_factor_and_degrees_of_freedom(self):
+    def test_u_expanded_u_factor_and_degrees_of_freedom(self):
         shown = text_of("result", calibration())
-        self.assertIn("M = 123.0021(54) mm", shown)
-        self.assertIn("offset of the profiler from the axis, along X 0.0054 mm 0.011 mm 2.04 31", shown)
-        self.assertIn("tilt_x = −0.0001235(12) rad", shown)
-        self.assertIn("U (95 %)", shown)
+        self.assertIn("M / mm 0.0054 31", shown)
         self.assertIn("M = (123.002 ± 0.011) mm, where the number after ± is U = k u, with u = 0.0054 mm and "
                       "k = 2.04 from the t-distribution for 31 degrees of freedom", shown)
         self.assertIn("holds all 3 estimated quantities together with 95 % is an ellipsoid with k = 2.93",
@@ -92,7 +186,7 @@ class ResultTest(unittest.TestCase):
 
     def test_in_german_with_commas(self):
         shown = text_of("result", calibration(), language="de")
-        self.assertIn("M = 123,0021(54) mm", shown)
+        self.assertIn("M = (123,002 ± 0,011) mm", shown)
         self.assertIn("Überdeckungswahrscheinlichkeit von etwa 95 %", shown)
         self.assertNotRegex(re.sub(r"GUM [\dG.]+", "", shown), r"\d\.\d")
 
@@ -102,15 +196,9 @@ class ResultTest(unittest.TestCase):
 
     def test_other_estimates_are_no_results(self):
         shown = text_of("result", calibration())
-        self.assertIn("For comparison only", shown)
-        self.assertIn("Not results.", shown)
-        self.assertNotIn("jackknife M", shown)  # nobody has one: no column
-
-    def test_of_a_robot_the_hand_eye_and_where_the_rest_stands(self):
-        shown = text_of("result", robot())
-        self.assertIn("hand_eye_rx = 1.000(10) mm", shown)
-        self.assertNotIn("theta_1 =", shown)
-        self.assertIn("The 12 link errors stand in Links and hand-eye", shown)
+        self.assertIn("for comparison only, no results", shown)
+        self.assertNotIn("bootstrap jackknife", shown)  # nobody has one: no column
+        self.assertIn("naive clustered bootstrap M", shown)
 
     def test_unreliable_numbers_are_marked(self):
         self.assertIn("For diagnosis only", text_of("result", calibration(status="unreliable")))
@@ -126,7 +214,7 @@ class ResultTest(unittest.TestCase):
         for section in ("verdict", "result", "considered", "inputs", "certificate"):
             for language in ("en", "de"):
                 text_of(section, bare, language=language)
-        self.assertIn("M = 123.000 mm", text_of("result", bare))
+        self.assertIn("M / mm – ∞", text_of("result", bare))
         procedure.sentences(bare, EN)
         self.assertIn("No parameter was estimated", text_of("result", calibration(parameters=[])))
 
@@ -166,23 +254,34 @@ class ProcedureTest(unittest.TestCase):
 class CertificateTest(unittest.TestCase):
     def test_as_given_and_nothing_else(self):
         shown = text_of("certificate", calibration(certificate=CERTIFICATE))
-        self.assertIn("Laboratory name Beispiel-Labor", shown)
-        self.assertIn("address, city Braunschweig", shown)
-        self.assertIn("Item name Liniensensor <am> Drehtisch", shown)
-        self.assertIn("identification, value 007", shown)  # the only one: without a number
-        self.assertIn("Responsible 1, name A. Berg", shown)
+        self.assertIn("Laboratory Beispiel-Labor accreditation: D-K-00000-01-00 Hauptstraße 1 38116 Braunschweig DE further: 2nd floor", shown)
+        self.assertIn("Item Liniensensor <am> Drehtisch", shown)
+        self.assertIn("issued by: manufacturer, value: 007", shown)
+        self.assertIn("Responsible A. Berg, function: head of laboratory", shown)
         self.assertIn("room B 12", shown)  # under its own name
-        self.assertIn("data for a calibration certificate after ISO/IEC 17025, 7.8", shown)
+        self.assertIn("Environment temperature: 20.1 °C ± 0.3 K", shown)
+        self.assertIn("data for a calibration certificate after ISO/IEC 17025, 7.8; no conformity", shown)
         given = copy.deepcopy(CERTIFICATE)
         del given["laboratory"]
-        self.assertNotIn("Laboratory",
-                         text_of("certificate", calibration(certificate=given)).split("As given")[-1])
+        self.assertNotIn("Beispiel", text_of("certificate", calibration(certificate=given)))
 
-    def test_every_value_appears_once(self):
+    def test_who_signs_has_a_line_for_it(self):
+        shown = text_of("certificate", calibration(certificate=CERTIFICATE))
+        self.assertTrue(shown.endswith("Date, signature A. Berg, head of laboratory"), shown)
+        self.assertEqual(shown.count("signature"), 1)  # B. Tal does not
+
+    def test_equipment_without_a_certificate_is_named(self):
+        self.assertNotIn("No certificate is named", text_of("certificate", calibration(certificate=CERTIFICATE)))
+        given = CERTIFICATE | {"equipment": [{"name": "plate", "certificate": "PTB 1"}, {"name": "encoder"}]}
+        self.assertIn("No certificate is named of encoder: what it brings",
+                      text_of("certificate", calibration(certificate=given)))
+
+    def test_every_value_appears(self):
+        shown = [line for block in administration.blocks(CERTIFICATE, EN) for line in block.lines]
         told = [text for _, text in administration.leaves(CERTIFICATE)]
-        shown = administration.rows(CERTIFICATE, EN)
-        self.assertEqual(sorted(text for _, _, text in shown), sorted(told))
-        self.assertIn("true", told)
+        for text in told:
+            lines = [line for line in shown if re.search(rf"(^|[ ,]){re.escape(text)}($|[ ,])", line)]
+            self.assertGreaterEqual(len(lines), told.count(text), text)
 
     def test_empty_fields_are_left_out(self):
         given = {"order": None, "customer": {"name": "", "address": {}}, "statements": [], "issued": " "}
@@ -195,33 +294,37 @@ class CertificateTest(unittest.TestCase):
                         calibration(certificate={"a.b{c}": [1, [2, {"name": "x"}]], "name": {"": 3}}))
         self.assertIn("a.b{c}", shown)
 
-    def test_the_head_names_what_was_given(self):
-        environment = page.environment_of(calibration(certificate=CERTIFICATE), None, EN)
-        self.assertIn("certificate", environment.globals["c"])
-        content = page.sections.content("head", calibration(certificate=CERTIFICATE), None, EN)
-        self.assertIn(("Performed", "2026-11-02 to 2026-11-03"), content["identification"])
-        self.assertIn(("Certificate", "K-2026-0815"), content["identification"])
-        for nothing in (None, {}, "text", {"item": "x", "performed": {"begin": None}}):
-            c = calibration(certificate=nothing) if nothing is not None else calibration()
-            self.assertEqual(page.sections.content("head", c, None, EN)["identification"], [])
-
 
 class ConsideredTest(unittest.TestCase):
-    def test_held_considered_and_set_aside(self):
+    def test_held_and_set_aside_but_not_what_the_budget_has(self):
         shown = text_of("considered", calibration())
-        self.assertIn("scale_y considered 0.00010 instrument", shown)
+        self.assertNotIn("scale_y", shown)  # its line in the budget says all of it
+        self.assertIn("scale_y considered 0.00010 instrument", text_of("considered", calibration(budget=None)))
         self.assertIn("Held at zero: tilt_y.", shown)
-        self.assertIn("left 1 000 5 3 3 off the line of their profile", shown)
-        self.assertIn("All 2 targets 3 000 5 3", shown)
-        self.assertIn("tilt_y held", shown)
-        self.assertIn("M by 0.50 u", shown)
+        self.assertIn("3 points were set aside: 3 off the line of their profile.", shown)
+
+    def test_what_the_residuals_ask_for_with_both_p(self):
+        asked = calibration()["misfits"][0] | {"F": 8.0, "dof2": 31.0, "p": 0.024, "source": "shear"}
+        tests = [asked, calibration()["misfits"][0], calibration()["misfits"][0]]
+        shown = text_of("considered", calibration(misfits=tests))
+        self.assertIn("For each of 3 quantities", shown)
+        self.assertIn("shear held 3.0 × 10⁻⁶ rad 8.00 0.008 0.02 M by 0.50 u", shown)
+        self.assertNotIn("tilt_y held", shown)  # it asks for nothing and moves nothing
+        self.assertIn("2 more have no row", shown)
+
+    def test_p_by_itself_is_that_of_the_tables(self):
+        """Of F: its 5 % points (e.g. NIST/SEMATECH Handbook, 1.3.6.7.3); of t, squared."""
+        for F, dof1, dof2, p in ((161.448, 1, 1, 0.05), (4.965, 1, 10, 0.05), (3.326, 5, 10, 0.05),
+                                 (1.927, 10, 100, 0.05), (2.5706**2, 1, 5, 0.05), (1.0, 7, 7, 0.5), (0.0, 3, 4, 1.0)):
+            self.assertAlmostEqual(uncertainty.f_upper_tail(F, dof1, dof2), p, delta=3e-4)
+        self.assertAlmostEqual(uncertainty.f_upper_tail(64.3, 16, 589) / 1e-117, 0, delta=1e3)
 
     def test_influences_of_newer_files(self):
-        influences = [{"source": "noise_y", "role": "estimate", "u": 0.05, "unit": "mm", "scope": "point"},
+        influences = [{"source": "noise_z", "role": "estimate", "u": 0.05, "unit": "mm", "scope": "point"},
                       {"source": "tilt_y", "role": "hold", "u": 0.0, "unit": "rad", "scope": "system"},
                       {"source": "form", "role": "consider", "u": 0.002, "unit": "mm", "scope": "target"}]
         shown = text_of("considered", calibration(influences=influences))
-        self.assertIn("form considered 0.0020 mm target noise_y variance from the residuals 0.050 mm point",
+        self.assertIn("form considered 0.0020 mm target noise_z variance from the residuals 0.050 mm point",
                       shown)
 
     def test_values_that_are_held_elsewhere(self):
@@ -229,14 +332,14 @@ class ConsideredTest(unittest.TestCase):
         c["parameters"][3]["value"] = 0.01
         self.assertIn("tilt_y = 0.0100000 rad held", text_of("considered", c))
 
-    def test_many_targets(self):
+    def test_points_set_aside_of_many_targets(self):
         targets = [{"name": f"t{k}", "points": 10, "missing": 0, "set_aside": k, "set_aside_reasons": {}}
                    for k in range(400)]
-        shown = text_of("considered", calibration(targets=targets))
-        self.assertIn("t399", shown)
-        self.assertNotIn("t300 ", shown)
-        self.assertIn("The 40 targets with the most points set aside; 360 more", shown)
-        self.assertIn("All 400 targets 4 000 0 79 800", shown)
+        self.assertIn("79 800 points were set aside.", text_of("considered", calibration(targets=targets)))
+        for target in targets:
+            target["set_aside_reasons"] = {"off the line of their profile": target["set_aside"]}
+        self.assertIn("79 800 points were set aside: 79 800 off the line",
+                      text_of("considered", calibration(targets=targets)))
 
 
 class InputsTest(unittest.TestCase):
