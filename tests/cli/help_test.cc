@@ -80,7 +80,7 @@ TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
                                    "noise", "line_correlation", "encoder_jitter", "form", "form_kind", "one_plate",
                                    "outliers", "background", "declare", "missing", "search_width_M", "search_width_N",
                                    "seed", "format", "model", "stations", "poses", "translations", "configuration",
-                                   "ball_noise", "repeatability", "u_artifact", "check_positions"));
+                                   "ball_noise", "repeatability", "u_artifact", "check_positions", "planes"));
 }
 
 TEST(HelpTest, FlagsHaveUnitsAndDefaults) {

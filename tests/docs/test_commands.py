@@ -43,7 +43,7 @@ def check_script(words: list[str]) -> None:
 
 def check_use(words: list[str]) -> None:
     """scancal COMMAND --flag=VALUE with values that stand for others."""
-    if len(words) == 1:
+    if len(words) == 1 or words[1] == "--version":
         return
     offered = help_of([PROGRAM, words[1]]) if words[1] != "COMMAND" else ""
     check_flags([word for word in words[1:] if word != "--help"], offered)
