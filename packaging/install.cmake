@@ -4,6 +4,7 @@ include(GNUInstallDirs)
 set(doc ${CMAKE_INSTALL_DATAROOTDIR}/doc/scancal)
 install(TARGETS scancal RUNTIME DESTINATION bin)  # it looks for ../share/scancal/page: neither can be chosen
 install(DIRECTORY report/page DESTINATION share/scancal PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY scripts/cluster DESTINATION share/scancal USE_SOURCE_PERMISSIONS)
 install(DIRECTORY docs DESTINATION ${doc})
 install(DIRECTORY data DESTINATION ${doc})
 install(FILES README.md CHANGELOG.md CONVENTIONS.md DESTINATION ${doc})

@@ -168,7 +168,8 @@ class Commands(unittest.TestCase):
                     words[0] = words[0].removeprefix("./")
                     if words[0] in ("scancal", "build/scancal"):
                         check_use(words)
-                    elif words[0].startswith("scripts/") and len(words[0]) > len("scripts/"):
+                    elif words[0].startswith("scripts/") and not (
+                            (SOURCE / words[0]).is_dir() or words[0].endswith("/Snakefile")):
                         check_script(words)
                     elif words[0].startswith("--"):
                         check_flags(["the program", *words], every_flag)

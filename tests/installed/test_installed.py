@@ -1,4 +1,5 @@
 """The program as `cmake --install` leaves it: in a folder with blanks in its name, moved, and used from there."""
+import functools
 import os
 import re
 import shutil
@@ -74,9 +75,17 @@ class Installed(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("share/scancal/page: no such folder, but it makes the report", done.stderr)
 
+    def test_the_scripts_for_clusters_come_along(self):
+        for name in ("parallel", "slurm"):
+            done = run(self.prefix / "share/scancal/cluster" / name, "--help")
+            self.assertEqual(done.returncode, 0)
+            self.assertIn(f"scripts/cluster/{name} LIST OUT", done.stdout)
+
+    @functools.cache
     def commands(self) -> list[str]:
         return re.findall(r"^  (\w+) ", run(self.program, "--help").stdout, re.M)
 
+    @functools.cache
     def flags_of(self, command: str) -> list[str]:
         return re.findall(r"^  (--\w+)", run(self.program, command, "--help").stdout, re.M)
 
@@ -102,7 +111,7 @@ class Installed(unittest.TestCase):
             return done.stdout.splitlines()
         self.assertEqual(completed(""), self.commands())
         self.assertEqual(completed("simul"), ["simulate"])
-        for command in self.commands():
+        for command in ("refine", "simulate", "report"):
             self.assertEqual([word.rstrip("=") for word in completed(command, "--")], self.flags_of(command))
         self.assertEqual(completed("refine", "--out", "=", "lef"), ["left.csv"])
         self.assertEqual(completed("refine", "dat"), ["dataset.yaml"])
