@@ -145,7 +145,7 @@ class Ros1Bag : public RosBag {
     if (archive_read_open_memory(unpacker.get(), packed.data(), packed.size()) != ARCHIVE_OK ||
         archive_read_next_header(unpacker.get(), &entry) != ARCHIVE_OK)
       return damaged();
-    constexpr size_t kPiece = size_t{1} << 16, kSmall = size_t{1} << 26, kMostGrowth = 500;
+    constexpr size_t kPiece = size_t{1} << 16, kSmall = size_t{1} << 26, kMostGrowth = 100;
     std::string bytes;
     for (;;) {
       const size_t had = bytes.size();
@@ -155,7 +155,7 @@ class Ros1Bag : public RosBag {
       bytes.resize(had + static_cast<size_t>(count));
       if (count == 0) return bytes;
       if (bytes.size() > kSmall + kMostGrowth * packed.size())
-        return Error{file_.name() + ": a chunk grows by more than 500 times as it is unpacked, expected messages"};
+        return Error{file_.name() + ": a chunk grows by more than 100 times as it is unpacked, expected messages"};
     }
   }
 

@@ -91,7 +91,8 @@ class RosReader : public ScanReader {
     SCANCAL_RETURN_IF_ERROR(Survey());
     SCANCAL_RETURN_IF_ERROR(ChooseTopic());
     const std::vector<ScanTime>& scans = scans_[topic_];
-    description_ = title_ + ": " + std::to_string(scans.size()) + " scans of " + topic_;
+    description_ =
+        title_ + ": " + std::to_string(scans.size()) + (scans.size() == 1 ? " scan of " : " scans of ") + topic_;
     if (by_joint_) {
       SCANCAL_RETURN_IF_ERROR(ChooseJoint());
       SCANCAL_RETURN_IF_ERROR(Join(scans));

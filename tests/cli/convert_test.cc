@@ -1,6 +1,7 @@
 // scancal convert: one format to another, by the readers of scans.
 #include <gmock/gmock.h>
 #include "tests/cli/data_set.h"
+#include "tests/io/ros_bags.h"
 
 namespace scancal {
 namespace {
@@ -76,7 +77,8 @@ TEST_F(ConvertTest, WhatIsWrongIsToldInOneSentenceAndNothingIsWritten) {
   WriteWhole(in, "Frame,y,z\n1,2,3\n");
   EXPECT_THAT(Refusal(in, out), HasSubstr("expected also 'angle'"));
   EXPECT_THAT(Refusal(in, out, "{columns: {angle: Frame}, colums: 1}"), HasSubstr("--as:1:27: unknown key 'colums'"));
-  EXPECT_THAT(Refusal(in, out, "format: gokator"), HasSubstr("expected one of gocator, lj-v, lj-x, image, ply, pcd"));
+  EXPECT_THAT(Refusal(in, out, "format: gokator"),
+              HasSubstr("expected one of gocator, lj-v, lj-x, image, ply, pcd, ros1, ros2"));
   EXPECT_THAT(Refusal(in, Path("out.xyz"), "columns: {angle: Frame}"), HasSubstr("expected .csv, .npy, .ply or .pcd"));
   EXPECT_THAT(Refusal(in, in, "columns: {angle: Frame}"), HasSubstr("that is the file to read"));
   EXPECT_THAT(Refusal(Path("absent.csv"), out), HasSubstr("no such file"));
@@ -103,6 +105,16 @@ TEST_F(ConvertTest, DepthIsAsItWas) {
   EXPECT_EQ(ReadWhole(out), ReadWhole(in));
   EXPECT_THAT(Convert(in, out, "depth: away").out, Not(HasSubstr("declares depth")));
   EXPECT_THAT(Refusal(in, out, "depth: down"), HasSubstr("expected away or towards"));
+}
+
+TEST_F(ConvertTest, ABagWithTheTopicAndTheJointThatAreNamed) {
+  const fs::path in = Path("run.bag"), out = Path("out.csv");
+  WriteWhole(in, Ros1BagOf({JointMessage(false, 1, {"pan", "tilt"}, {9, 0}), ScanMessage(false, 2, {1, 2}),
+                            ScanMessage(false, 2, {5}, 0, "/back"), JointMessage(false, 3, {"pan", "tilt"}, {9, 1})}));
+  EXPECT_THAT(Convert(in, out, "{topic: /scan, joint: tilt, joint_topic: /joint_states}").out,
+              HasSubstr("ROS 1 bag: 1 scan of /scan, angle from tilt in /joint_states in the middle of each"));
+  EXPECT_EQ(ReadWhole(out), "bearing_rad,range_mm,profile,time,angle_rad\n-0.5,1000,1,0,0.5\n-0.25,2000,1,0,0.5\n");
+  EXPECT_THAT(Refusal(in, out, "topic: /scan"), HasSubstr("found the joints pan, tilt, expected the one that turns"));
 }
 
 }  // namespace

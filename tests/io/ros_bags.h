@@ -5,7 +5,9 @@
 #endif
 #include <archive.h>
 #include <archive_entry.h>
+#include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 #include "tests/io/temporary_folder.h"
