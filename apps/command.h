@@ -20,7 +20,7 @@ struct Command {
 };
 
 extern const Command kRefineCommand, kMonteCarloCommand, kCompareCommand, kSimulateCommand, kTransformCommand,
-    kPropagateCommand, kUrdfCommand, kReportCommand, kRecheckCommand, kConvertCommand, kSelftestCommand;
+    kPropagateCommand, kUrdfCommand, kReportCommand, kRecheckCommand, kConvertCommand, kPlanesCommand, kSelftestCommand;
 
 // Exit codes.
 inline constexpr int kTrusted = 0, kBadInput = 1, kUnreliable = 2;

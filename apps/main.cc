@@ -19,7 +19,7 @@ namespace {
 
 const Command* const kCommands[] = {&kRefineCommand,    &kMonteCarloCommand, &kCompareCommand, &kSimulateCommand,
                                     &kTransformCommand, &kPropagateCommand,  &kUrdfCommand,    &kReportCommand,
-                                    &kRecheckCommand,   &kConvertCommand,    &kSelftestCommand};
+                                    &kRecheckCommand,   &kConvertCommand,    &kPlanesCommand,  &kSelftestCommand};
 std::string command_line;
 
 void PrintOverview() {

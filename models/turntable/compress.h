@@ -116,6 +116,9 @@ struct SensorColumns {
   std::vector<double> alpha, y, z, range;
 };
 void ToSensor(const Senses& senses, const ScanBatch& batch, SensorColumns* points);
+// Which rows of the batch every interval of `keep` keeps; y and z may be derived from bearing and range.
+Result<std::vector<char>> Kept(const ScanDeclaration& scan, const ScanBatch& batch, const SensorColumns& points);
+Error HeightsWithoutSense(const ScanDeclaration& scan);  // gives_heights(), and no depth: is declared
 
 // The profiles as the model sees them, with the columns of errors that move a profile's line.
 std::vector<Model::View> Views(const std::vector<Profile>& profiles, Model::Residuals residuals);

@@ -86,6 +86,12 @@ ScanDeclaration ReadTarget(YamlMap target, const YamlMap& top, const Dataset& da
   scan.format = ScanFormatOf(scan.scan == "-" ? "/dev/stdin" : dataset.file.parent_path() / scan.scan, dataset.units);
   for (const YamlMap& map : {top, target}) ReadScanFormat(map, dataset.file.parent_path(), &scan.format);
   ReadKeep(target, dataset.units, &scan);
+  for (YamlMap map : {top, target}) {
+    if (!map.Has("planes")) continue;
+    scan.planes = map.Text("planes");
+    scan.planes_place = map.Where("planes");
+    if (scan.planes.empty()) map.Fail("planes", "expected find, or the path of a file of planes");
+  }
   for (const KeepInterval& keep : scan.keep)
     if (!kColumns.contains(keep.column)) scan.format.columns.push_back({keep.column, Dimension::kNone, true});
   return scan;
@@ -93,7 +99,8 @@ ScanDeclaration ReadTarget(YamlMap target, const YamlMap& top, const Dataset& da
 
 bool SamePoints(const ScanDeclaration& a, const ScanDeclaration& b) {
   return a.format.path.lexically_normal() == b.format.path.lexically_normal() && a.format.lines == b.format.lines &&
-         a.keep == b.keep && a.format.text.where == b.format.text.where && a.format.ros.topic == b.format.ros.topic;
+         a.keep == b.keep && a.planes == b.planes && a.format.text.where == b.format.text.where &&
+         a.format.ros.topic == b.format.ros.topic;
 }
 
 bool IsKnown(const char* name, const Dataset& dataset) {

@@ -1,6 +1,9 @@
 // What a turntable's dataset.yaml declares.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,11 +21,24 @@ struct KeepInterval {
   bool operator==(const KeepInterval&) const = default;
 };
 
+// Points of a scan that are one plane, as a file of planes tells them: running numbers, from 1, among the points that
+// are read from the scan (missing ones do not count). Together with what tells that the scan is the one that they are
+// of.
+struct PlaneChoice {
+  std::string place;                         // "planes.yaml: planes of room: plane 1", for messages
+  std::vector<std::array<int64_t, 2>> runs;  // first, last; ascending
+  int64_t points_in_file = 0;
+  std::string checksum;  // PointsChecksum
+};
+
 struct ScanDeclaration {  // one target: one placement of the plate
   std::string name;
   std::string scan;  // as written
   ScanFormat format;
   std::vector<KeepInterval> keep;
+  std::string planes;                        // "find", or a file of planes as written; empty: the target is one plane
+  std::string planes_place;                  // where that stands
+  std::shared_ptr<const PlaneChoice> plane;  // one of that file: see ChoosePlanes
 };
 
 // A scan of which nothing is declared but the units: the columns that a turntable knows.

@@ -8,6 +8,8 @@
 #include "io/message.h"
 #include "models/line/moments.h"
 #include "models/turntable/compress.h"
+#include "models/turntable/planes_file.h"
+#include "models/turntable/range_image.h"
 
 namespace scancal::turntable {
 namespace {
@@ -19,22 +21,13 @@ constexpr Message<std::string_view> kLooksShuffled{
     "Prüfkörper {}: Die meisten Profile haben nur einen Punkt, und ihre Winkel kehren wieder; stehen die Punkte nicht "
     "in der Reihenfolge der Profile, so ist eine Spalte profile zu ergänzen, sonst ist u zu klein"};
 
-// Which rows of the batch every interval of `keep` keeps; y and z may be derived from bearing and range.
-Result<std::vector<char>> Kept(const ScanDeclaration& scan, const ScanBatch& batch, const SensorColumns& points) {
-  std::vector<char> kept(batch.size(), 1);
-  for (const KeepInterval& interval : scan.keep) {
-    const int found = batch.Find(interval.column);
-    const std::vector<double>* values = found >= 0               ? &batch.columns[found]
-                                        : interval.column == "y" ? &points.y
-                                        : interval.column == "z" ? &points.z
-                                                                 : nullptr;
-    if (!values)
-      return Error{scan.format.path.string() + ": keep: " + interval.column + ": no such column, found " +
-                   Listed(batch.names)};
-    for (size_t i = 0; i < kept.size(); ++i)
-      kept[i] &= (*values)[i] >= interval.lower && (*values)[i] <= interval.upper;
+// Takes from `kept` what is no part of the plane. before: points of the file that came before this batch.
+void KeepPlane(const PlaneChoice& plane, int64_t before, size_t* run, std::vector<char>* kept) {
+  for (size_t i = 0; i < kept->size(); ++i) {
+    const int64_t number = before + static_cast<int64_t>(i) + 1;
+    while (*run < plane.runs.size() && plane.runs[*run][1] < number) ++*run;
+    (*kept)[i] &= static_cast<char>(*run < plane.runs.size() && plane.runs[*run][0] <= number);
   }
-  return kept;
 }
 
 constexpr size_t kTakenPoints = 100'000;  // at once, from a scan whose points are not held
@@ -155,6 +148,30 @@ void ToSensor(const Senses& senses, const ScanBatch& batch, SensorColumns* point
   }
 }
 
+Result<std::vector<char>> Kept(const ScanDeclaration& scan, const ScanBatch& batch, const SensorColumns& points) {
+  std::vector<char> kept(batch.size(), 1);
+  for (const KeepInterval& interval : scan.keep) {
+    const int found = batch.Find(interval.column);
+    const std::vector<double>* values = found >= 0               ? &batch.columns[found]
+                                        : interval.column == "y" ? &points.y
+                                        : interval.column == "z" ? &points.z
+                                                                 : nullptr;
+    if (!values)
+      return Error{scan.format.path.string() + ": keep: " + interval.column + ": no such column, found " +
+                   Listed(batch.names)};
+    for (size_t i = 0; i < kept.size(); ++i)
+      kept[i] &= (*values)[i] >= interval.lower && (*values)[i] <= interval.upper;
+  }
+  return kept;
+}
+
+Error HeightsWithoutSense(const ScanDeclaration& scan) {
+  return {
+      fmt::format("{}: target {}: its maker counts y towards the sensor, expected depth: towards in the data "
+                  "set, or depth: away if it was turned round since",
+                  scan.format.path.string(), scan.name)};
+}
+
 namespace {
 
 // The profiles that were gathered, to the points that are kept of them.
@@ -183,21 +200,23 @@ Result<void> TakeIn(std::vector<RawProfile> profiles, const ScanDeclaration& dec
 Result<RawScan> ReadScan(const ScanDeclaration& scan, const Senses& senses,
                          const std::function<void(double)>& progress) {
   SCANCAL_ASSIGN_OR_RETURN(const auto reader, ScanReader::Open(scan.format));
-  if (reader->gives_heights() && !senses.depth_declared)
-    return Error{
-        fmt::format("{}: target {}: its maker counts y towards the sensor, expected depth: towards in the data "
-                    "set, or depth: away if it was turned round since",
-                    scan.format.path.string(), scan.name)};
+  if (reader->gives_heights() && !senses.depth_declared) return HeightsWithoutSense(scan);
   Gatherer gatherer(scan.format.path);
   ScanBatch batch;
   SensorColumns points;
+  PointsChecksum checksum;
+  size_t run = 0;
   RawScan result;
   result.name = scan.name;
   for (;;) {
     SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
     if (!more) break;
     ToSensor(senses, batch, &points);
-    SCANCAL_ASSIGN_OR_RETURN(const std::vector<char> kept, Kept(scan, batch, points));
+    SCANCAL_ASSIGN_OR_RETURN(std::vector<char> kept, Kept(scan, batch, points));
+    if (scan.plane) {
+      KeepPlane(*scan.plane, checksum.points(), &run, &kept);
+      checksum.Add(batch);
+    }
     const int profile = batch.Find("profile"), time = batch.Find("time"), temperature = batch.Find("temperature");
     result.timed |= time >= 0;
     const double* const keys = profile >= 0 ? batch.columns[profile].data() : nullptr;
@@ -223,6 +242,7 @@ Result<RawScan> ReadScan(const ScanDeclaration& scan, const Senses& senses,
     progress(static_cast<double>(reader->bytes_read()) /
              static_cast<double>(std::max<int64_t>(1, reader->bytes_total())));
   }
+  if (scan.plane) SCANCAL_RETURN_IF_ERROR(CheckSameScan(scan, checksum));
   if (gatherer.points() == 0)
     return Error{scan.format.path.string() + ": target " + scan.name + ": no point is left; widen its keep: intervals"};
   result.missing = static_cast<double>(reader->missing());

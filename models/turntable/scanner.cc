@@ -7,6 +7,7 @@
 #include <numeric>
 #include "io/output_file.h"
 #include "io/progress.h"
+#include "models/turntable/planes_file.h"
 #include "models/turntable/tables.h"
 #include "solver/parallel.h"
 
@@ -209,6 +210,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
 Result<std::unique_ptr<scancal::Scanner>> Load(const Dataset& dataset) {
   Model model(Model::Residuals::kDepth);
   SCANCAL_ASSIGN_OR_RETURN(Declaration declaration, Declare(dataset, &model));
+  SCANCAL_RETURN_IF_ERROR(ChoosePlanes(&declaration));
   SCANCAL_ASSIGN_OR_RETURN(const std::vector<RawScan> scans, ReadScans(declaration));
   for (const RawScan& scan : scans)
     declaration.warnings.insert(declaration.warnings.end(), scan.warnings.begin(), scan.warnings.end());
@@ -255,6 +257,7 @@ std::vector<std::filesystem::path> Scanner::Files() const {
     if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
   };
   for (const ScanDeclaration& scan : declaration_.scans) {
+    if (scan.plane) add(declaration_.dataset.file.parent_path() / scan.planes);
     add(scan.format.path);
     if (scan.format.angle && !scan.format.angle->file.empty()) add(scan.format.angle->file);
   }
@@ -310,7 +313,9 @@ Result<std::unique_ptr<scancal::Scanner>> Reload(const Dataset& dataset, const J
   SCANCAL_ASSIGN_OR_RETURN(std::vector<Placement> placements, PlacementsFromJson(data, file));
   auto scan = declaration.scans.begin();  // a copy of another target is not among the placements
   for (const Placement& placement : placements) {
-    const auto is_its_own = [&](const ScanDeclaration& each) { return each.name == placement.name; };
+    const auto is_its_own = [&](const ScanDeclaration& each) {
+      return each.planes.empty() ? each.name == placement.name : placement.name.starts_with(each.name + " ");
+    };
     scan = std::find_if(scan, declaration.scans.end(), is_its_own);
     if (scan == declaration.scans.end()) break;
   }

@@ -38,7 +38,7 @@ TEST(HelpTest, WithoutArgumentsTheCommandsAreListed) {
   const Outcome outcome = RunScancal({});
   EXPECT_EQ(outcome.exit_code, 1);
   for (const char* command :
-       {"refine", "montecarlo", "compare", "simulate", "transform", "propagate", "convert", "selftest"})
+       {"refine", "montecarlo", "compare", "simulate", "transform", "propagate", "convert", "planes", "selftest"})
     EXPECT_THAT(outcome.out, HasSubstr("\n  " + std::string(command) + " "));
   EXPECT_THAT(outcome.out, Not(HasSubstr("--flagfile")));
 }
@@ -67,6 +67,7 @@ TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
   EXPECT_THAT(HelpFlags("recheck"), ElementsAre("key", "sign"));
   EXPECT_THAT(HelpFlags("compare"), ElementsAre("steps", "surface"));
   EXPECT_THAT(HelpFlags("convert"), ElementsAre("as"));
+  EXPECT_THAT(HelpFlags("planes"), ElementsAre("out"));
   EXPECT_THAT(HelpFlags("selftest"), ElementsAre("nist"));
   EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out", "unreliable", "key"));
   EXPECT_THAT(HelpFlags("propagate"),

@@ -74,6 +74,46 @@ TEST_F(TiltingLidarTest, AWiderSearchDoesNotMakeItReliable) {
   EXPECT_THAT(outcome.out, HasSubstr("the grid minimum lies"));
 }
 
+// What is plane in the whole scan, found: desk, wall and floor in both sweeps. M and N of the two sweeps agree within
+// their U, or nobody says that they are reliable.
+TEST_F(TiltingLidarTest, PlanesAreFoundInItsScan) {
+  const fs::path file = data_ / "dataset.yaml";
+  const std::string declared = ReadWhole(file);
+  const auto declare = [&](const std::string& planes) {
+    WriteWhole(file, declared.substr(0, declared.find("targets:")) + "planes: " + planes +
+                         "\ntargets:\n  - {name: room, scan: " + kScan + "}\n");
+  };
+  declare("find");
+  const Outcome found = RunScancal({"planes", data_.string(), "--out=" + data_.string()});
+  ASSERT_EQ(found.exit_code, 0) << found.err;
+  const std::string planes = ReadWhole(data_ / "planes.yaml");
+  Json results[2];
+  for (const int k : {0, 1}) {
+    const std::string other = k == 0 ? " down\"" : " up\"";
+    std::string kept = planes;
+    for (size_t at = kept.rfind("      - name: "); at != std::string::npos;
+         at = at == 0 ? std::string::npos : kept.rfind("      - name: ", at - 1)) {
+      const size_t end = std::min(kept.find("      - name: ", at + 1), kept.size());
+      if (kept.substr(at, kept.find('\n', at) - at).ends_with(other)) kept.erase(at, end - at);
+    }
+    WriteWhole(data_ / "planes.yaml", kept);
+    declare("planes.yaml");
+    const Outcome outcome = Refine(data_);
+    ASSERT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 2) << outcome.err;
+    results[k] = Result();
+    EXPECT_GE(results[k]["targets"].size(), 3U);
+    double points = 0;
+    for (const Json& target : results[k]["targets"]) points += target["points"].get<double>();
+    EXPECT_GT(points, 70'000);  // the desk alone has 60,000
+  }
+  const bool told = results[0]["status"] != "ok" || results[1]["status"] != "ok";
+  for (const char* name : {"M", "N"}) {
+    const double apart = std::abs(ValueOf(results[0], name) - ValueOf(results[1], name));
+    const double within = 1.96 * std::hypot(UOf(results[0], name), UOf(results[1], name));
+    EXPECT_TRUE(told || apart < within) << name << ": " << apart << " apart, expected " << within;
+  }
+}
+
 TEST_F(TiltingLidarTest, TheScanIsHashedOnce) {
   Refine(data_);
   const Json result = Result();

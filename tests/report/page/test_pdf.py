@@ -45,7 +45,7 @@ class PdfTest(unittest.TestCase):
         self.assertIn("Endofthereport.", sheets[-1])
 
     def test_is_short(self):
-        for scene, most in (("sample", 8), ("named_robot", 14)):  # of the sample with its Monte Carlo
+        for scene, most in (("sample", 8), ("named_robot", 12)):  # of the sample with its Monte Carlo
             self.assertLessEqual(len(Printed(pages.pdf(scene)).pages), most, scene)
 
     def test_names_are_not_read_as_rules_of_style(self):
