@@ -90,12 +90,15 @@ TEST_F(PlanesTest, TheFileIsTheUsersUntilItContradictsTheScan) {
   const Json result = Refined(data_);
   EXPECT_EQ(result["targets"][0]["name"], std::string(kTarget) + " left wall");
 
+  const auto with_runs = [&](const std::string& runs) {
+    return first.substr(0, first.find("runs: |")) + "runs: " + runs + "\n";
+  };
   EXPECT_THAT(RefusalWith("\"plane 1 up\"", "\"plane 1 down\""), HasSubstr("expected a name that no other plane"));
   EXPECT_THAT(RefusalWith("\"plane 1 up\"", "''"), HasSubstr("expected a name"));
-  EXPECT_THAT(RefusalWith("runs: |", "runs: 5-4 #"), HasSubstr("expected numbers of points, ascending"));
-  EXPECT_THAT(RefusalWith("runs: |", "runs: 1-99999999999999999999 #"), HasSubstr("expected numbers of points"));
-  EXPECT_THAT(RefusalWith("runs: |", "runs: 1-99999999 #"), HasSubstr("the points of the scan"));
-  EXPECT_THAT(RefusalWith("runs: |", "runs: 1-5 #"), HasSubstr("as many as its runs hold"));
+  EXPECT_THAT(RefusalWith(first, with_runs("5-4")), HasSubstr("expected numbers of points, ascending"));
+  EXPECT_THAT(RefusalWith(first, with_runs("1-99999999999999999999")), HasSubstr("expected numbers of points"));
+  EXPECT_THAT(RefusalWith(first, with_runs("1-99999999")), HasSubstr("the points of the scan"));
+  EXPECT_THAT(RefusalWith(first, with_runs("1-5")), HasSubstr("as many as its runs hold"));
   EXPECT_THAT(RefusalWith("runs: |", "rums: |"), HasSubstr("runs"));
   EXPECT_THAT(RefusalWith("checksum: \"", "checksum: \"0"), HasSubstr("another scan"));
   EXPECT_THAT(RefusalWith("- target: \"the", "- target: \"a"),
