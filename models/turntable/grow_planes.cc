@@ -13,13 +13,13 @@ namespace {
 
 constexpr double kTolerance = 4;          // sigma
 constexpr double kRougher = 2;            // than its seed, and the plane ends there
-constexpr double kRoughestSeed = 6;        // of the noise between neighbours
+constexpr double kRoughestSeed = 6;       // of the noise between neighbours
 constexpr double kSeedSide = 10;          // of a block, in noise
 constexpr int32_t kFewestOfSide = 6;      // cells of a block
 constexpr double kFilled = 0.45;          // of a block
 constexpr double kLeastCosine = 0.26;     // within 15 degrees of edge-on
 constexpr double kNoDepth = 0.03;         // cosine below which depth says nothing
-constexpr size_t kFewestPoints = 200;     // of a plane, after erosion
+constexpr size_t kFewestOfPlane = 200;    // of a plane, after erosion
 constexpr double kFewestOfImage = 0.002;  // of all points
 constexpr size_t kSmallestPiece = 20;     // of a plane that erosion has cut in pieces
 constexpr int32_t kFewestColumns = 5;     // of a plane
@@ -117,7 +117,7 @@ class Grower {
   double Z(int32_t p) const { return image_.z[static_cast<size_t>(p)]; }
   double DepthOf(int32_t p) const { return image_.lidar ? std::hypot(Y(p), Z(p)) : Y(p); }
   size_t Fewest() const {
-    return std::max(kFewestPoints, static_cast<size_t>(kFewestOfImage * static_cast<double>(image_.y.size())));
+    return std::max(kFewestOfPlane, static_cast<size_t>(kFewestOfImage * static_cast<double>(image_.y.size())));
   }
   Eigen::Vector3d PlaceOf(int32_t r, int32_t p) const {
     const RowInTable& at = at_[static_cast<size_t>(r)];

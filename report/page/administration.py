@@ -10,6 +10,7 @@ KNOWN = ["identification", "order", "performed", "begin", "end", "place", "recei
          "statements"]
 
 Path = tuple[str | int, ...]
+_OF_A_LIST = ("issuer", "place", "signs")  # whose values are words of the program, in certificate.value
 _ADDRESS = (("street", "number"), ("postcode", "city"), ("state",), ("country",))  # lines of it
 
 
@@ -96,7 +97,9 @@ def _lines(given: object, path: Path, certificate: object, language) -> list[str
         if key in ("address", "identifications"):
             lines += _lines(given[key], (*path, key), certificate, language)
             continue
-        lines += [f"{label_of(at, language)}: {text}" for at, text in leaves({key: given[key]})]
+        lines += [f"{label_of(at, language)}: "
+                  f"{language.named('certificate.value', text) if at[-1] in _OF_A_LIST else text}"
+                  for at, text in leaves({key: given[key]})]
     return lines
 
 

@@ -23,7 +23,7 @@ _FOOT = """
                        max-height: 1.5em; overflow: hidden; white-space: nowrap; }
         @bottom-right { margin-top: 6mm; max-height: 1.5em; } }
 """
-_LETTERS, _OF_NAME = 90, 44  # as many as have room, of which the name keeps some
+_LETTERS, _OF_NAME = 90, 16  # as many as have room, of which the name keeps some
 
 
 def foot(c: Calibration, t: Language) -> str:

@@ -66,7 +66,6 @@ def _by_lag(axes, targets: list[dict], t) -> None:
     axes.xaxis.set_major_formatter(style.plain_numbers(t))
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, -LEAST_SCALE), max(high, LEAST_SCALE))
-    axes.legend(loc="upper right", handlelength=1.5, fontsize=7)
     axes.set_xlabel(t("figure.residual_line.lag"))
     axes.set_ylabel(t("figure.residual_line.autocorrelation"))
 

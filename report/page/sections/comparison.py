@@ -2,7 +2,7 @@
 import math
 
 from comparison import SUMMARIES, cell, column_title, columns, method_name, methods
-from notation import concise, count, significant
+from notation import MINUS, concise, count, significant, to_last_digit_of
 
 WIDTH = 66  # characters beside the names of the methods
 VALUES = ["M/mm", "N/mm", "ΔM/u", "ΔN/u", "tilt_x/mrad", "tilt_y/mrad"]  # in one table, in this order
@@ -16,9 +16,18 @@ def content(c, previous, t) -> dict[str, object]:
     rows = methods(c)
     shown = [column for column in columns(rows) if not _says_nothing(column, rows)]
     notes = list(dict.fromkeys(row["note"] for row in rows if row.get("note")))
+    if not c.is_reliable:  # no u behind a value
+        rows = [row | {"cells": [_without_u(each) for each in row.get("cells") or []]} for row in rows]
     tables = [_table(part, k == 0, rows, notes, t) for k, part in enumerate(_parts(shown, rows, t))]
     return {"tables": tables, "alike": _alike(rows, t), "notes": [(_mark(k), t.sentence(note)) for k, note in enumerate(notes)],
             "about": t(f"comparison.about.{c['model']}")}
+
+
+def _without_u(of: dict) -> dict:
+    """The value to the digits that a u would leave it."""
+    if not of.get("u") or of.get("value") is None:
+        return of
+    return of | {"u": None, "value": float(to_last_digit_of(of["u"], of["value"]).replace(MINUS, "-"))}
 
 
 def _alike(rows: list[dict], t) -> str:
@@ -80,7 +89,7 @@ def _text(row: dict, column: str, rows: list[dict], t) -> str:
         return count(value)
     if u:
         return t.number(concise(value, u))
-    if any(cell(other, column).get("u") for other in rows):
+    if column in VALUES[:2] or any(cell(other, column).get("u") for other in rows):
         return t.number(significant(value, 6))
     return t.number(significant(value, 2 if column.isdecimal() or column in ROUGH else 3))
 

@@ -73,6 +73,10 @@ class Browser:
         """Pixels that one has to scroll to the right."""
         return self.run("const root = document.documentElement; return root.scrollWidth - root.clientWidth")
 
+    def end_of_status(self) -> float:
+        """Where the line of the status ends: above it stand who, what, and every result."""
+        return self.run("return document.querySelector('p.status').getBoundingClientRect().bottom + window.scrollY")
+
     def too_wide_for_a_sheet(self) -> int:
         """The same on A4 with its margins of 16 mm: printing would shrink the page by it."""
         self._do("Emulation.setEmulatedMedia", media="print")

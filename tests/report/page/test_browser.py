@@ -14,6 +14,7 @@ from printed import Printed
 WIDTHS = [1280, 390]
 WIDE = ["sample", "robot", "named", "named_robot"]
 MOST_BYTES = 3_000_000
+FIRST_SCREEN = 844  # pixels of a phone; on 1280 x 800 it ends far above
 OF_ALL = ["budget", "scene"]
 OF_SCANS = ["comparison", "residual_map", "residual_sweep", "residual_line", "residual_histogram", "surface_contour"]
 OF_ROBOTS = ["correlation", "links", "robot_residuals", "joints", "workspace", "lengths"]  # two numbers need no matrix
@@ -70,6 +71,9 @@ class PageTest(InBrowser):
                     self.assertEqual(getattr(self.browser, found)(), [])
             with self.subTest(what, of="width"):
                 self.assertEqual(self.browser.too_wide(), 0)
+            if not scene.startswith("named"):  # whose names fill a screen
+                with self.subTest(what, of="first screen"):
+                    self.assertLess(self.browser.end_of_status(), FIRST_SCREEN)
             with self.subTest(what, of="figures"):
                 self.assertEqual(sorted(self.browser.figures()), sorted(f"figure-{name}" for name in FIGURES[scene]))
 

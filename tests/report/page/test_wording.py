@@ -4,6 +4,7 @@ import re
 import unittest
 
 from synthetic import CERTIFICATE, calibration, estimated, said, text_of
+from fit_scenes import turntable_row
 from uncertainty_scenes import whole
 import administration
 import page
@@ -168,6 +169,12 @@ class UnreliableTest(unittest.TestCase):
             self.assertNotRegex(shown, r"\bU\b", section)
         self.assertEqual(text_of("volume", c) + text_of("monte_carlo", c), "")
 
+    def test_methods_without_u(self):
+        rows = [turntable_row("one", (122.36512, 0.045), (409.0, 0.05)), turntable_row("two", (122.4, 0.045), (409.0, 0.05))]
+        for status, expected in (("ok", "122.365(45)"), ("unreliable", "122.365")):
+            content = page.sections.content("comparison", calibration(compare=rows, status=status), None, EN)
+            self.assertIn(expected, [cell for row in content["tables"][0]["rows"] for cell in row["cells"]])
+
     def test_links_without_intervals(self):
         shown = text_of("links", robot(status="unreliable"))
         self.assertIn("nobody knows how wrong they are", shown)
@@ -265,6 +272,12 @@ class CertificateTest(unittest.TestCase):
         del given["laboratory"]
         self.assertNotIn("Beispiel", text_of("certificate", calibration(certificate=given)))
 
+    def test_words_of_the_program_are_in_the_readers_language(self):
+        shown = text_of("certificate", calibration(certificate=CERTIFICATE), language="de")
+        self.assertIn("vergeben von: Hersteller", shown)
+        self.assertIn("Ort: Laboratorium", shown)
+        self.assertIn("unterzeichnet: ja", shown)
+
     def test_who_signs_has_a_line_for_it(self):
         shown = text_of("certificate", calibration(certificate=CERTIFICATE))
         self.assertTrue(shown.endswith("Date, signature A. Berg, head of laboratory"), shown)
@@ -278,7 +291,7 @@ class CertificateTest(unittest.TestCase):
 
     def test_every_value_appears(self):
         shown = [line for block in administration.blocks(CERTIFICATE, EN) for line in block.lines]
-        told = [text for _, text in administration.leaves(CERTIFICATE)]
+        told = [{"true": "yes"}.get(text, text) for _, text in administration.leaves(CERTIFICATE)]
         for text in told:
             lines = [line for line in shown if re.search(rf"(^|[ ,]){re.escape(text)}($|[ ,])", line)]
             self.assertGreaterEqual(len(lines), told.count(text), text)
