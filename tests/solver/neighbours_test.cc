@@ -39,7 +39,7 @@ Problem ProblemOf(const LineScene& scene, Role noise) {
 }
 
 TEST(AcrossNeighbours, TestsOfTheModelHaveTheDistributionOfF) {
-  constexpr int kTrials = 400;
+  constexpr int kTrials = 250;
   for (const double correlation : {0.0, 0.8}) {
     double misfit = 0, misfit_dof = 0, target = 0, target_dof = 0, jackknife = 0, expected = 0;
     for (int trial = 1; trial <= kTrials; ++trial) {

@@ -12,7 +12,7 @@ from pictures import broken_images, broken_svgs
 from printed import Printed
 
 WIDTHS = [1280, 390]
-WIDE = ["sample", "robot", "named", "named_robot"]
+WIDE = ["sample", "robot"]
 MOST_BYTES = 3_000_000
 FIRST_SCREEN = 844  # pixels of a phone; on 1280 x 800 it ends far above
 OF_ALL = ["budget", "scene"]
@@ -40,8 +40,8 @@ class InBrowser(unittest.TestCase):
     def each_page(self):
         """Opens every page in every language; a test that goes on with the next at a complaint.
 
-        In the narrow window: figures scale with it, and what fits there fits in a wide one; one page of each model and
-        those with long names in a wide one, too.
+        In the narrow window: figures scale with it, and what fits there fits in a wide one; the sample of either
+        scanner in a wide one, too.
         """
         for scene in pages.SCENES:
             for language in pages.LANGUAGES.get(scene, ["en", "de"]):

@@ -33,28 +33,21 @@ class PdfTest(unittest.TestCase):
             without = [k for k, letters in enumerate(Printed(pages.pdf(scene)).pages) if name[:40] not in letters]
             self.assertEqual(without, [], scene)  # of a long one more has no room
 
-    def test_every_sheet_has_the_numbers_of_certificate_and_item(self):
-        found = json.loads(pages.calibration("sample").read_text()) | {"certificate": CERTIFICATE}
+    def test_every_sheet_has_the_numbers_of_certificate_and_item_and_a_name_that_is_no_rule_of_style(self):
+        found = json.loads(pages.calibration("sample").read_text()) | {
+            "certificate": CERTIFICATE, "name": 'var(--evil) "; } h1 { font: 9px x'}
         file = pages.folder() / "numbers.json"
         file.write_text(json.dumps(found))
         pages.report(file, f"--pdf={file.with_suffix('.pdf')}")
         sheets = Printed(file.with_suffix(".pdf")).pages
         for k, letters in enumerate(sheets):
-            self.assertIn("CertificateK-2026-0815,serialnumber007;simulatedplate,3placements,seed1", letters)
+            self.assertIn("CertificateK-2026-0815,serialnumber007;var(--evil)\";}h1{font:9pxx", letters)
             self.assertIn(f"Page{k + 1}of{len(sheets)}", letters)
         self.assertIn("Endofthereport.", sheets[-1])
 
     def test_is_short(self):
         for scene, most in (("sample", 8), ("named_robot", 12)):  # of the sample with its Monte Carlo
             self.assertLessEqual(len(Printed(pages.pdf(scene)).pages), most, scene)
-
-    def test_names_are_not_read_as_rules_of_style(self):
-        found = json.loads(pages.calibration("sample").read_text()) | {"name": 'var(--evil) "; } h1 { font: 9px x'}
-        file = pages.folder() / "style.json"
-        file.write_text(json.dumps(found))
-        pages.report(file, f"--pdf={file.with_suffix('.pdf')}")
-        for letters in Printed(file.with_suffix(".pdf")).pages:
-            self.assertIn('var(--evil)";}h1{font:9pxx', letters)
 
     def test_is_for_the_archive(self):
         file = pages.pdf("sample")

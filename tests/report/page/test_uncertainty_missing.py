@@ -13,7 +13,7 @@ EN, DE = Language("en"), Language("de")
 
 class WhatIsMissingTest(unittest.TestCase):
     def test_every_figure_is_drawn_of_a_whole_calibration(self):
-        for number in (1, 2, 3, 60):
+        for number in (1, 2, 60):
             c = whole(number)
             for name in FIGURES:
                 drawing = figures.draw(name, c, EN)
@@ -35,7 +35,7 @@ class WhatIsMissingTest(unittest.TestCase):
                     "joint": "leave_one_out", "montecarlo": "monte_carlo", "scene": "scene",
                     "volume": "volume"}
         for key, section in sections.items():
-            for number in (2, 5):
+            for number in (2,):
                 for changes in (lambda c: c.pop(key), lambda c: c.update({key: None}),
                                 lambda c: c.update({key: type(c[key])()})):
                     c = whole(number)
