@@ -11,7 +11,7 @@ constexpr size_t kHole = 6;                        // cells that are missing wit
 constexpr int32_t kBlock = 6;                      // cells, the side of a block that may be off
 constexpr double kOffBlock = 1.5, kOffSingle = 4;  // sigma: the mean of a block, more where it has few cells
 constexpr int32_t kParts = 6;                      // of a region, either way, that are asked whether it is bent
-constexpr double kBent = 0.5;                      // sigma
+constexpr double kBent = 0.8;                      // sigma
 
 size_t Place(int32_t cell) { return static_cast<size_t>(cell); }
 
