@@ -61,7 +61,8 @@ TEST_F(SimulateRobotTest, WrongFlagsAreRefused) {
     flags.insert(flags.begin(), {"simulate", out});
     return OneSentence(RunScancal(flags));
   };
-  EXPECT_THAT(refused({"--model=robot"}), AllOf(HasSubstr("\"robot\""), HasSubstr("turntable, robot-ball or robot-profiler")));
+  EXPECT_THAT(refused({"--model=robot"}),
+              AllOf(HasSubstr("\"robot\""), HasSubstr("turntable, robot-ball or robot-profiler")));
   EXPECT_THAT(refused({"--poses=4"}), AllOf(HasSubstr("--poses"), HasSubstr("--model=robot-ball")));
   EXPECT_THAT(refused({"--model=robot-ball", "--sweep=20"}), AllOf(HasSubstr("--sweep"), HasSubstr("turntable")));
   EXPECT_THAT(refused({"--model=robot-ball", "--configuration=flat"}), HasSubstr("spatial, planar or collinear"));
