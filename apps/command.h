@@ -20,10 +20,12 @@ struct Command {
 };
 
 extern const Command kRefineCommand, kMonteCarloCommand, kCompareCommand, kSimulateCommand, kTransformCommand,
-    kPropagateCommand, kUrdfCommand, kReportCommand, kRecheckCommand, kConvertCommand, kPlanesCommand, kSelftestCommand;
+    kPropagateCommand, kUrdfCommand, kReportCommand, kRecheckCommand, kDiffCommand, kHistoryCommand, kConvertCommand,
+    kPlanesCommand, kSelftestCommand;
 
 // Exit codes.
 inline constexpr int kTrusted = 0, kBadInput = 1, kUnreliable = 2;
+inline constexpr int kFoundOut = kUnreliable;  // a command that asks whether all is well: it is not
 
 int Complain(const std::string& sentence);  // to standard error; returns kBadInput
 std::string CommandLine();                  // as typed, quoted where a shell needs it

@@ -98,13 +98,15 @@ Result<int> SayWhetherItHolds(const std::filesystem::path& file) {
 int RunRecheck(const std::vector<std::string>& arguments) {
   if (arguments.size() != 1)
     return Complain("found " + std::to_string(arguments.size()) + " arguments, expected one: a calibration.json");
-  std::filesystem::path file = arguments[0];
-  if (std::filesystem::is_directory(file)) file /= "calibration.json";
-  const Result<int> code = SayWhetherItHolds(file);
+  const Result<int> code = SayWhetherItHolds(CalibrationIn(arguments[0]));
   return code.ok() ? *code : Complain(code.error().message);
 }
 
 }  // namespace
+
+std::filesystem::path CalibrationIn(const std::filesystem::path& given) {
+  return std::filesystem::is_directory(given) ? given / "calibration.json" : given;
+}
 
 bool HoldsData(const Json& json) {
   return json.contains("data") && json["data"].is_object() && json["data"].contains("dataset") &&

@@ -20,6 +20,9 @@ struct Rechecked {
   std::vector<Sentence> doubts;  // why nobody can say that it is what its data say; none: it is
 };
 
+// The file itself, or calibration.json in that folder.
+std::filesystem::path CalibrationIn(const std::filesystem::path& given);
+
 bool HoldsData(const Json& json);
 // The scanner of the data in a calibration.json.
 Result<std::unique_ptr<Scanner>> Reload(const Json& json, const std::string& file);

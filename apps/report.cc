@@ -5,6 +5,8 @@
 #include "apps/calibrate.h"
 #include "apps/command.h"
 #include "io/json_file.h"
+#include "models/models.h"
+#include "report/difference.h"
 #include "report/page.h"
 
 DECLARE_string(out);
@@ -35,6 +37,8 @@ Result<Json> CheckedFigures(const Rechecked& result, const PageChoice& choice) {
   SCANCAL_ASSIGN_OR_RETURN(const Rechecked previous, Recheck(choice.previous, /*monte_carlo=*/false));
   for (const Sentence& doubt : previous.doubts)
     std::fprintf(stderr, "scancal: warning: %s: %s\n", choice.previous.c_str(), doubt.english.c_str());
+  const Series series = SeriesOf(std::vector{previous.found, result.found}, AnewInEachCalibration());
+  figures["difference"] = ToJson(DifferenceOf(series), DoubtsAbout(previous.file, result.file));
   return figures;
 }
 
@@ -43,8 +47,7 @@ int RunReport(const std::vector<std::string>& arguments) {
     return Complain("found " + std::to_string(arguments.size()) + " arguments, expected one: a calibration.json");
   const Result<void> spoken = CheckLanguage();
   if (!spoken.ok()) return Complain(spoken.error().message);
-  std::filesystem::path calibration = arguments[0];
-  if (std::filesystem::is_directory(calibration)) calibration /= "calibration.json";
+  const std::filesystem::path calibration = CalibrationIn(arguments[0]);
   PageChoice choice{FLAGS_out, FLAGS_pdf, FLAGS_dcc, FLAGS_previous, FLAGS_language};
   if (choice.html.empty() && choice.pdf.empty() && choice.dcc.empty() && FLAGS_figures.empty())
     choice.html = calibration.parent_path() / "report.html";

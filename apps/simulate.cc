@@ -58,7 +58,7 @@ DEFINE_double(background, 0, "turntable: share of every line that sees a wall 30
 DEFINE_double(missing, 0, "turntable: share of points without a return, 0 to 1");
 DEFINE_double(search_width_M, 20, "turntable: width of the search interval of M, mm; it is not centred on the truth");
 DEFINE_double(search_width_N, 30, "turntable: width of the search interval of N, mm");
-DEFINE_string(format, "csv", "turntable: csv (angles to 1e-6 deg, lengths to 0.1 um) or npy (every digit)");
+DEFINE_string(format, "", "turntable: csv (angles to 1e-6 deg, lengths to 0.1 um; the default) or npy (every digit)");
 
 DEFINE_int32(planes, 8, "robot-profiler: planes");
 DEFINE_int32(stations, 8, "robot-ball: stations of the artifact");
@@ -89,7 +89,7 @@ double NumberOfFlag(const std::string& name) {
 }
 
 int RunTurntable() {
-  if (FLAGS_format != "csv" && FLAGS_format != "npy")
+  if (!FLAGS_format.empty() && FLAGS_format != "csv" && FLAGS_format != "npy")
     return Complain("--format: found \"" + FLAGS_format + "\", expected csv or npy");
   if (FLAGS_form_kind != "modes" && FLAGS_form_kind != "smooth" && FLAGS_form_kind != "bent")
     return Complain("--form_kind: found \"" + FLAGS_form_kind + "\", expected modes, smooth or bent");

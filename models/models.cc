@@ -25,4 +25,9 @@ Result<const ScannerKind*> FindScannerKind(const std::string& name, const std::s
   return Error{place + ": found \"" + name + "\", expected one of: " + names};
 }
 
+const std::set<std::string>& AnewInEachCalibration() {
+  static const std::set<std::string> names = {"expansion", "drift", "drift_sweep", "drift_temperature", "warm_up"};
+  return names;
+}
+
 }  // namespace scancal

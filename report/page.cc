@@ -99,4 +99,13 @@ Result<bool> WritePage(const std::filesystem::path& calibration, const Json& fig
   return status == 0;
 }
 
+Result<bool> WriteHistoryPage(const Json& history, const std::filesystem::path& html, const std::string& language) {
+  SCANCAL_ASSIGN_OR_RETURN(const Maker maker, FindMaker());
+  std::vector<std::string> command = {Python(), "-B", maker.folder / "history.py", "--language=" + language,
+                                      "--out=" + html.string()};
+  if (!maker.kept_fonts.empty()) command.push_back("--fonts=" + maker.kept_fonts.string());
+  SCANCAL_ASSIGN_OR_RETURN(const int status, Run(std::move(command), history.dump()));
+  return status == 0;
+}
+
 }  // namespace scancal

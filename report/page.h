@@ -20,5 +20,7 @@ struct PageChoice {
 // program: in ../share/scancal/page where it is installed, in share/scancal/page where it was built. False: it has said
 // why on standard error. An Error: it could not be started.
 Result<bool> WritePage(const std::filesystem::path& calibration, const Json& figures, const PageChoice& choice);
+// Control charts as a page, of ToJson(History); the same.
+Result<bool> WriteHistoryPage(const Json& history, const std::filesystem::path& html, const std::string& language);
 
 }  // namespace scancal

@@ -135,9 +135,9 @@ def _as_found(found: Calibration, left: Calibration, t: Language) -> dict[str, o
     given = found.get("certificate")
     named = ", ".join(filter(None, [as_text(given.get("identification")) if isinstance(given, dict) else "",
                                     period(found, t), str(found.get("name") or "")]))
-    return {"quantities": told, "named": named, "note": t("as_found.note"),
-            "doubts": [t(f"as_found.doubt.{doubt.key}", names=", ".join(doubt.names))
-                       for doubt in as_found.doubts(found, left)]}
+    shared = ", ".join(as_found.shared(left))
+    notes = [t("as_found.note"), *([t("as_found.shared", names=shared)] if shared else [])]
+    return {"quantities": told, "named": named, "notes": notes + as_found.doubts(left, t.code)}
 
 
 def _columns(covariance: list[list[float]], units: list[str]) -> list[list[tuple[str, str]]]:

@@ -41,6 +41,7 @@ double JointCoverageFactor(double coverage, double n, double dof) {
 double FUpperTail(double f, double dof1, double dof2) {
   if (!(f > 0)) return 1;
   if (std::isinf(f)) return 0;
+  if (std::isinf(dof2)) return boost::math::cdf(boost::math::complement(boost::math::chi_squared(dof1), f * dof1));
   return boost::math::cdf(boost::math::complement(boost::math::fisher_f(dof1, dof2), f));
 }
 

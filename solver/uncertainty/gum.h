@@ -26,7 +26,7 @@ double CoverageFactor(double coverage, double dof);
 // k^2 = n F(coverage; n, dof), or chi^2(coverage; n) of a known variance (Scheffe, The Analysis of Variance, 1959,
 // ch. 2; JCGM 102, 6.5.2). Larger than the k of one.
 double JointCoverageFactor(double coverage, double n, double dof);
-// P(F >= f) with dof1, dof2 degrees of freedom: the p of an F test.
+// P(F >= f) with dof1, dof2 degrees of freedom: the p of an F test; dof2 may be infinite, dof1 F is then chi^2.
 double FUpperTail(double f, double dof1, double dof2);
 
 }  // namespace scancal

@@ -65,6 +65,8 @@ TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
                                                    "sign", "accept_unreliable"));
   EXPECT_THAT(HelpFlags("report"), ElementsAre("out", "pdf", "dcc", "figures", "previous", "language", "key"));
   EXPECT_THAT(HelpFlags("recheck"), ElementsAre("key", "sign"));
+  EXPECT_THAT(HelpFlags("diff"), ElementsAre("format", "unreliable", "key"));
+  EXPECT_THAT(HelpFlags("history"), ElementsAre("format", "out", "language", "unreliable", "key"));
   EXPECT_THAT(HelpFlags("compare"), ElementsAre("steps", "surface"));
   EXPECT_THAT(HelpFlags("convert"), ElementsAre("as"));
   EXPECT_THAT(HelpFlags("planes"), ElementsAre("out"));

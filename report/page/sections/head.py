@@ -59,7 +59,7 @@ def _quantity(parameter: dict, c: Calibration, t: Language) -> dict[str, str]:
 def _as_found(found: Calibration, left: Calibration, t: Language) -> str:
     """In one line; what it says of a doubtful comparison is that it is doubtful."""
     changes = as_found.changes(found, left)
-    doubtful = t("head.as_found.doubtful") if as_found.doubts(found, left) else ""
+    doubtful = t("head.as_found.doubtful") if as_found.doubts(left, t.code) else ""
     changed = [each for each in changes if each.e_n is not None and abs(each.e_n) > 1]
     known = [each for each in changes if each.e_n is not None]
     if not known:

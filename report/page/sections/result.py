@@ -5,7 +5,6 @@ from calibration import Calibration
 from language import Language
 
 OTHERS = ["naive", "clustered", "jackknife", "bootstrap"]  # estimates of u
-MOST_NAMES = 8
 
 
 def content(c: Calibration, previous: Calibration | None, t: Language) -> dict[str, object]:
@@ -16,11 +15,5 @@ def content(c: Calibration, previous: Calibration | None, t: Language) -> dict[s
                 "identification")) if isinstance(each.get("certificate"), dict) else "", period(each, t),
                 ", ".join(serial_numbers(each))) for which, each in (("found", previous), ("left", c)) if each],
             "has_turns": bool(previous) and any(p["name"].endswith("_rx") for p in previous.estimated),
-            "doubts": [_in_words(doubt, t) for doubt in as_found.doubts(previous, c)] if previous else []}
-
-
-def _in_words(doubt: as_found.Doubt, t: Language) -> str:
-    names = ", ".join(doubt.names[:MOST_NAMES])
-    if len(doubt.names) > MOST_NAMES:
-        names = t("as_found.and_more", names=names, count=len(doubt.names) - MOST_NAMES)
-    return t(f"as_found.doubt.{doubt.key}", names=names)
+            "shared": ", ".join(as_found.shared(c)) if previous else "",
+            "doubts": as_found.doubts(c, t.code) if previous else []}

@@ -79,6 +79,14 @@ def calibration(**changes) -> Calibration:
     return c
 
 
+def difference(**changes) -> dict:
+    """"difference" of that calibration against one with M = 122.9: what `scancal report` adds."""
+    return {"changes": [{"name": "M", "unit": "mm", "change": 0.1021, "u": 0.0076, "U": 0.0155, "E_n": 6.6},
+                        {"name": "N", "unit": "mm", "change": 0.0, "u": 0.0185, "U": 0.038, "E_n": 0.0},
+                        {"name": "tilt_x", "unit": "rad", "change": 0.0, "u": 2e-6, "U": None, "E_n": None}],
+            "shared": ["scale_y"], "doubts": []} | changes
+
+
 def text_of(section: str, c: Calibration, previous: Calibration | None = None, language: str = "en") -> str:
     """What a reader sees of a section, in one line."""
     body = page.render_section(section, page.environment_of(c, previous, Language(language, c, previous)))

@@ -13,7 +13,7 @@ import dcc
 from calibration import Calibration, Complaint
 from certificates import certified, texts, tree, written
 from language import Language
-from synthetic import CERTIFICATE, calibration
+from synthetic import CERTIFICATE, calibration, difference, said
 
 SCHEMA = paths.DATA_SETS / "dcc-schema" / "v3.3.0" / "dcc.xsd"
 MANDATORY = ["identification", "country", "performed: begin", "performed: end", "performed: place", "item: name",
@@ -79,6 +79,7 @@ class SchemaTest(unittest.TestCase):
             for c in (certified(),
                       certified(warnings=[warning, "another"], montecarlo={"trials": 1000}, budget=None)):
                 self.assertEqual(self.wrong(written(c, language)), "")
+                c["difference"] = difference(doubts=[said("doubtful", "zweifelhaft")])
                 self.assertEqual(self.wrong(written(c, language, previous=as_found_scene())), "")
 
     def test_valid_with_the_least_that_is_demanded(self):

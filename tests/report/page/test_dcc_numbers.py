@@ -5,7 +5,7 @@ from decimal import Decimal
 from certificates import NAMES, certified, texts, tree, written
 import dcc
 from test_dcc import as_found_scene
-from synthetic import calibration, said
+from synthetic import calibration, difference, said
 
 UNITS = {"mm": "\\milli\\metre", "rad": "\\radian"}
 
@@ -93,15 +93,23 @@ class ContentTest(unittest.TestCase):
         self.assertEqual(tree(written(c)).findall(".//dcc:influenceConditions", NAMES), [])
 
     def test_as_found(self):
-        lines = [each for each in tree(written(certified(), previous=as_found_scene())).findall(".//dcc:list", NAMES)
+        changes = difference()["changes"]
+        changes[2] |= {"U": 4e-6, "E_n": 0.0}
+        compared = certified(difference=difference(changes=changes,
+                                                   doubts=[said("Both use the same measurements", "")]))
+        lines = [each for each in tree(written(compared, previous=as_found_scene())).findall(".//dcc:list", NAMES)
                  if each.findall("dcc:quantity", NAMES)[0].get("refType") == "basic_measuredValue"]
         self.assertEqual([texts(each, "dcc:quantity//si:value") for each in lines],
                          [["122.900", "0.102", "6.6"], ["408.988", "0.000", "0.0"], ["-0.0001235", "0.0000000", "0.0"]])
         self.assertEqual([texts(each, "dcc:description/dcc:content") for each in lines],
                          [["changed"], ["no change shown"], ["no change shown"]])
-        shown = " ".join(tree(written(certified(), previous=as_found_scene())).itertext())
-        for text in ("K-2025-7, 2025-11-02, plate, last year", "Decision rule", "Both use the same measurements"):
+        shown = " ".join(tree(written(compared, previous=as_found_scene())).itertext())
+        for text in ("K-2025-7, 2025-11-02, plate, last year", "Decision rule", "Both use the same measurements",
+                     "as one and the same error in both: scale_y"):
             self.assertIn(text, shown)
+        unreliable = as_found_scene()
+        unreliable["status"] = "unreliable"
+        self.assertNotIn("Decision rule", written(compared, previous=unreliable))
         self.assertNotIn("Decision rule", written(certified()))
 
     def test_influences_that_the_data_cannot_exclude(self):
