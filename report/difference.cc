@@ -53,7 +53,7 @@ constexpr Message<std::string> kCommonInfluences{"report.common_influences",
                                                  "dasselbe Gerät ist, ist die Abweichung gemeinsam "
                                                  "und E_n zu klein."};
 
-std::string TextAt(const Json& json, const char* key) {
+std::string StringAt(const Json& json, const char* key) {
   const auto found = json.is_object() ? json.find(key) : json.end();
   return found != json.end() && found->is_string() ? found->get<std::string>() : "";
 }
@@ -86,7 +86,7 @@ std::string Names(const std::vector<std::string>& names) {
 
 const Json* Named(const Json& list, const std::string& name) {
   for (const Json& each : list)
-    if (TextAt(each, "name") == name) return &each;
+    if (StringAt(each, "name") == name) return &each;
   return nullptr;
 }
 
@@ -94,16 +94,16 @@ const Json* Named(const Json& list, const std::string& name) {
 std::vector<std::string> CommonInfluences(const Json& before, const Json& after) {
   std::set<std::string> declared;
   for (const Json& each : ListAt(before, "budget"))
-    if (TextAt(each, "type") == "B") declared.insert(TextAt(each, "source"));
+    if (StringAt(each, "type") == "B") declared.insert(StringAt(each, "source"));
   std::set<std::string> random;
   for (const Json& each : ListAt(after, "influences"))
-    if (const std::string scope = TextAt(each, "scope"); scope == "view" || scope == "point")
-      random.insert(TextAt(each, "source"));
+    if (const std::string scope = StringAt(each, "scope"); scope == "view" || scope == "point")
+      random.insert(StringAt(each, "source"));
   std::vector<std::string> common;
   for (const Json& each : ListAt(after, "budget")) {
-    const std::string source = TextAt(each, "source");
+    const std::string source = StringAt(each, "source");
     const bool counted_once = each.contains("sensitivity") && !each["sensitivity"].empty();
-    if (TextAt(each, "type") == "B" && declared.contains(source) && !counted_once && !random.contains(source))
+    if (StringAt(each, "type") == "B" && declared.contains(source) && !counted_once && !random.contains(source))
       common.push_back(source);
   }
   return common;
@@ -111,10 +111,10 @@ std::vector<std::string> CommonInfluences(const Json& before, const Json& after)
 
 std::vector<std::string> CommonInputs(const Json& before, const Json& after) {
   std::set<std::string> earlier;
-  for (const Json& each : ListAt(before, "inputs")) earlier.insert(TextAt(each, "sha256"));
+  for (const Json& each : ListAt(before, "inputs")) earlier.insert(StringAt(each, "sha256"));
   std::vector<std::string> common;
   for (const Json& each : ListAt(after, "inputs")) {
-    const std::string file = TextAt(each, "file"), sha256 = TextAt(each, "sha256");
+    const std::string file = StringAt(each, "file"), sha256 = StringAt(each, "sha256");
     const bool declares = file.ends_with(".yaml") || file.ends_with(".yml");  // is no measurement
     if (!sha256.empty() && !declares && earlier.contains(sha256)) common.push_back(file);
   }
@@ -130,15 +130,15 @@ double HeldAt(const Json& parameter) {
 void AddDoubtsAboutParameters(const Json& before, const Json& after, std::vector<Sentence>* doubts) {
   std::vector<std::string> missing, roles, held, considered, nominals;
   for (const Json& each : ListAt(before, "parameters"))
-    if (!Named(ListAt(after, "parameters"), TextAt(each, "name"))) missing.push_back(TextAt(each, "name"));
+    if (!Named(ListAt(after, "parameters"), StringAt(each, "name"))) missing.push_back(StringAt(each, "name"));
   for (const Json& each : ListAt(after, "parameters")) {
-    const std::string name = TextAt(each, "name"), role = TextAt(each, "role");
+    const std::string name = StringAt(each, "name"), role = StringAt(each, "role");
     const Json* earlier = Named(ListAt(before, "parameters"), name);
     if (!earlier) {
       missing.push_back(name);
       continue;
     }
-    const std::string role_then = TextAt(*earlier, "role");
+    const std::string role_then = StringAt(*earlier, "role");
     if ((role == "estimate") != (role_then == "estimate")) roles.push_back(name);
     else if (role != "estimate" && HeldAt(each) != HeldAt(*earlier)) held.push_back(name);
     else if (role != role_then) considered.push_back(name);
@@ -152,7 +152,7 @@ void AddDoubtsAboutParameters(const Json& before, const Json& after, std::vector
   if (!nominals.empty()) doubts->push_back(Say(kNominals, Names(nominals)));
 }
 
-Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json NumberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 std::string UnitText(Unit unit) { return unit == Unit::kOne ? "" : std::string(" ") + Name(unit); }
 
@@ -175,13 +175,13 @@ std::vector<Sentence> DoubtsAbout(const Json& before, const Json& after) {
   const auto differ = [&](const auto& message, const std::string& a, const std::string& b) {
     if (!a.empty() && !b.empty() && a != b) doubts.push_back(Say(message, a, b));
   };
-  differ(kOtherModels, TextAt(before, "model"), TextAt(after, "model"));
-  differ(kOtherResiduals, TextAt(before, "residual"), TextAt(after, "residual"));
+  differ(kOtherModels, StringAt(before, "model"), StringAt(after, "model"));
+  differ(kOtherResiduals, StringAt(before, "residual"), StringAt(after, "residual"));
   const std::string item_then = ItemOf(before), item_now = ItemOf(after);
   differ(kOtherItems, item_then, item_now);
   if (item_then.empty() != item_now.empty()) doubts.push_back(Say(kItemOfOne, item_then + item_now));
-  if (TextAt(before, "status") != "ok") doubts.push_back(Say(kEarlierUnreliable));
-  if (TextAt(after, "status") != "ok") doubts.push_back(Say(kLaterUnreliable));
+  if (StringAt(before, "status") != "ok") doubts.push_back(Say(kEarlierUnreliable));
+  if (StringAt(after, "status") != "ok") doubts.push_back(Say(kLaterUnreliable));
   AddDoubtsAboutParameters(before, after, &doubts);
   if (const auto names = CommonInputs(before, after); !names.empty())
     doubts.push_back(Say(kCommonInputs, Names(names)));
@@ -248,19 +248,19 @@ Json ToJson(const CalibrationDifference& difference, const std::vector<Sentence>
   Json json = {{"changes", Json::array()},
                {"shared", difference.shared},
                {"doubts", Json::array()},
-               {"chi_squared", Number(difference.chi_squared)},
+               {"chi_squared", NumberOrNull(difference.chi_squared)},
                {"n", difference.n},
-               {"dof", Number(difference.dof)},
-               {"p", Number(difference.p)},
+               {"dof", NumberOrNull(difference.dof)},
+               {"p", NumberOrNull(difference.p)},
                {"significant", difference.significant()},
                {"verdict", Verdict(difference)}};
   for (const ParameterChange& each : difference.changes)
     json["changes"].push_back({{"name", each.name},
                                {"unit", Name(each.unit)},
-                               {"change", Number(each.change)},
-                               {"u", Number(each.u)},
-                               {"U", Number(each.U)},
-                               {"E_n", Number(each.E_n)}});
+                               {"change", NumberOrNull(each.change)},
+                               {"u", NumberOrNull(each.u)},
+                               {"U", NumberOrNull(each.U)},
+                               {"E_n", NumberOrNull(each.E_n)}});
   for (const Sentence& doubt : doubts) json["doubts"].push_back({{"en", doubt.english}, {"de", doubt.german}});
   return json;
 }
@@ -342,25 +342,25 @@ Json ToJson(const History& history) {
   for (const ControlChart& chart : history.charts) {
     Json points = Json::array();
     for (const ChartPoint& p : chart.points)
-      points.push_back({{"value", Number(p.value)},
-                        {"u", Number(p.u)},
-                        {"U", Number(p.U)},
-                        {"low", Number(p.low)},
-                        {"high", Number(p.high)},
-                        {"deviation", Number(p.deviation)},
-                        {"up", Number(p.up)},
-                        {"down", Number(p.down)},
+      points.push_back({{"value", NumberOrNull(p.value)},
+                        {"u", NumberOrNull(p.u)},
+                        {"U", NumberOrNull(p.U)},
+                        {"low", NumberOrNull(p.low)},
+                        {"high", NumberOrNull(p.high)},
+                        {"deviation", NumberOrNull(p.deviation)},
+                        {"up", NumberOrNull(p.up)},
+                        {"down", NumberOrNull(p.down)},
                         {"beyond", p.beyond},
                         {"alarm", p.alarm}});
     json["charts"].push_back({{"name", chart.name},
                               {"unit", Name(chart.unit)},
-                              {"centre", Number(chart.centre)},
-                              {"u_centre", Number(chart.u_centre)},
-                              {"slope", Number(chart.slope)},
-                              {"u_slope", Number(chart.u_slope)},
+                              {"centre", NumberOrNull(chart.centre)},
+                              {"u_centre", NumberOrNull(chart.u_centre)},
+                              {"slope", NumberOrNull(chart.slope)},
+                              {"u_slope", NumberOrNull(chart.u_slope)},
                               {"drifts", chart.drifts},
-                              {"chi_squared", Number(chart.chi_squared)},
-                              {"p", Number(chart.p)},
+                              {"chi_squared", NumberOrNull(chart.chi_squared)},
+                              {"p", NumberOrNull(chart.p)},
                               {"points", points}});
   }
   return json;

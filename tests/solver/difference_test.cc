@@ -11,10 +11,10 @@ namespace scancal {
 namespace {
 
 // Two parameters with noise of their own and what g, considered with u_g, does to them.
-const Eigen::Vector2d kOfG = {2, -1};
+const Eigen::Vector2d kPerG = {2, -1};
 const Eigen::Matrix2d kOwn{{0.09, -0.02}, {-0.02, 0.04}};
 
-Calibration At(const Eigen::Vector2d& x, double u_g = 0.2, const Eigen::Vector2d& of_g = kOfG) {
+Calibration At(const Eigen::Vector2d& x, double u_g = 0.2, const Eigen::Vector2d& of_g = kPerG) {
   Calibration c;
   c.covariance = kOwn + u_g * u_g * of_g * of_g.transpose();
   for (int k = 0; k < 2; ++k) {
@@ -166,7 +166,7 @@ TEST(ChartsOf, HoldInRepeatedHistories) {
   for (int trial = 0; trial < kTrials; ++trial) {
     const double g = 0.2 * random.Normal();
     std::vector<Calibration> all;
-    for (int i = 0; i < kCalibrations; ++i) all.push_back(At(Draw(&random) + kOfG * g));
+    for (int i = 0; i < kCalibrations; ++i) all.push_back(At(Draw(&random) + kPerG * g));
     last = Charted(all)[0];
     centres += last.centre * last.centre / kTrials;
     slopes += last.slope * last.slope / kTrials;
