@@ -7,7 +7,7 @@
 namespace scancal::coverage {
 namespace {
 
-constexpr size_t kSets = 120;
+constexpr size_t kSets = 80;
 
 class Coverage : public ::testing::TestWithParam<const char*> {};
 
