@@ -27,7 +27,7 @@ class RosTest : public ScanFileTest, public ::testing::WithParamInterface<bool> 
   }
   void SetUp() override {
 #ifndef SCANCAL_SQLITE
-    if (cdr()) GTEST_SKIP() << "built without SQLite";
+    if (cdr()) GTEST_SKIP() << "NOT TESTED: built without SQLite (libsqlite3-dev), bags of ROS 2 are not read";
 #endif
   }
   BagMessage Scan(double time_s, const std::vector<float>& ranges, float time_increment = 0) const {
