@@ -74,14 +74,9 @@ Eigen::MatrixXd Model::Features(const std::vector<SeenBall>& balls) const {
 void SetTerms(Measurements* data) {
   const auto set = [&](std::vector<Model::View*> views) {
     std::stable_sort(views.begin(), views.end(), [](const auto* a, const auto* b) { return a->number < b->number; });
-    std::vector<const std::vector<double>*> joints;
-    for (const Model::View* view : views) joints.push_back(&view->joints);
-    const std::vector<std::vector<int>> directions = DirectionsOf(joints);
+    SetTermsInOrder(data->links, data->gravity, views);
     const double last = std::max(1.0, static_cast<double>(views.size()) - 1);
-    for (size_t v = 0; v < views.size(); ++v) {
-      views[v]->time = static_cast<double>(v) / last - 0.5;
-      views[v]->terms = JointTermsAt(data->links, views[v]->joints, directions[v], data->gravity);
-    }
+    for (size_t v = 0; v < views.size(); ++v) views[v]->time = static_cast<double>(v) / last - 0.5;
   };
   std::vector<Model::View*> poses, check, held_out;
   for (Station& station : data->stations)

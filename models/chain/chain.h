@@ -117,6 +117,16 @@ std::vector<double> JointTermsAt(const std::vector<Link>& links, const std::vect
 // sign of its move before.
 std::vector<std::vector<int>> DirectionsOf(const std::vector<const std::vector<double>*>& joints);
 
+// Sets the terms of poses (views with joints and terms) that were taken in this order.
+template <class View>
+void SetTermsInOrder(const std::vector<Link>& links, const Eigen::Vector3d& gravity, const std::vector<View*>& poses) {
+  std::vector<const std::vector<double>*> joints;
+  for (const View* pose : poses) joints.push_back(&pose->joints);
+  const std::vector<std::vector<int>> directions = DirectionsOf(joints);
+  for (size_t p = 0; p < poses.size(); ++p)
+    poses[p]->terms = JointTermsAt(links, poses[p]->joints, directions[p], gravity);
+}
+
 // The joint that each term turns.
 std::vector<int> JointsOfTerms(int links);
 

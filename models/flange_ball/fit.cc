@@ -52,15 +52,9 @@ Seating SeatingOf(const Robot& robot, const Model::Target& tool) {
 void SetTerms(const std::vector<Link>& links, const Eigen::Vector3d& gravity, Model::Target* tool) {
   for (const int socket : {0, 1}) {
     std::vector<Model::View*> views;
-    std::vector<const std::vector<double>*> joints;
     for (Model::View& view : tool->views)
-      if (view.socket == socket) {
-        views.push_back(&view);
-        joints.push_back(&view.joints);
-      }
-    const std::vector<std::vector<int>> directions = DirectionsOf(joints);
-    for (size_t v = 0; v < views.size(); ++v)
-      views[v]->terms = JointTermsAt(links, views[v]->joints, directions[v], gravity);
+      if (view.socket == socket) views.push_back(&view);
+    SetTermsInOrder(links, gravity, views);
   }
 }
 

@@ -41,11 +41,9 @@ Result<void> SetInfluences(const Dataset& dataset, Model* model) {
 }
 
 void SetTerms(const Arm& arm, std::vector<Model::View>* poses) {
-  std::vector<const std::vector<double>*> joints;
-  for (const Model::View& pose : *poses) joints.push_back(&pose.joints);
-  const std::vector<std::vector<int>> directions = DirectionsOf(joints);
-  for (size_t p = 0; p < poses->size(); ++p)
-    (*poses)[p].terms = JointTermsAt(arm.links, (*poses)[p].joints, directions[p], arm.gravity);
+  std::vector<Model::View*> in_order;
+  for (Model::View& pose : *poses) in_order.push_back(&pose);
+  SetTermsInOrder(arm.links, arm.gravity, in_order);
 }
 
 // Points off the line of their profile go.
