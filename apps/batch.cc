@@ -288,7 +288,7 @@ std::string ResultOf(const DataSet& set) {
   std::string text;
   size_t shown = 0;
   for (const Json& p : set.done.value("parameters", Json::array())) {
-    if (!p["value"].is_number() || !p["u"].is_number() || !(p["u"] > 0.0)) continue;
+    if (!p["value"].is_number() || !p["u"].is_number() || !(p["u"].get<double>() > 0)) continue;
     if (++shown > kShownParameters) return text + ", ...";
     text += fmt::format("{}{} {} {}", text.empty() ? "" : ", ", p["name"].get<std::string>(),
                         Concise(p["value"], p["u"]), p["unit"].get<std::string>());

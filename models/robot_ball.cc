@@ -1,5 +1,5 @@
 #include "models/robot_ball.h"
-#include <Eigen/QR>
+#include "solver/dense.h"
 
 namespace scancal::robot_ball {
 namespace {
@@ -42,19 +42,17 @@ std::vector<StandIns<Model::View>> Model::MakeNodes(const Target& station) const
   std::vector<StandIns<View>> result;
   for (const View& pose : station.views) {
     // Pivoting takes balls far apart first.
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(Features(pose.balls));
-    qr.setThreshold(kRankTolerance);
     View node = pose;
     node.balls.clear();
-    for (Eigen::Index k = 0; k < qr.rank(); ++k)
-      node.balls.emplace_back().sphere = pose.balls[qr.colsPermutation().indices()[k]].sphere;
+    for (const Eigen::Index k : IndependentColumns(Features(pose.balls), kRankTolerance))
+      node.balls.emplace_back().sphere = pose.balls[k].sphere;
     result.push_back({{std::move(node)}, 1});
   }
   return result;
 }
 
 Eigen::MatrixXd Model::Interpolate(const std::vector<View>& nodes, const View& pose) const {
-  const Eigen::MatrixXd by_feature = Features(nodes.front().balls).colPivHouseholderQr().solve(Features(pose.balls));
+  const Eigen::MatrixXd by_feature = LeastSquares(Features(nodes.front().balls), Features(pose.balls));
   const Eigen::Index balls = by_feature.cols(), columns = 3 * by_feature.rows();
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * balls, columns + 1);
   for (Eigen::Index b = 0; b < balls; ++b) {

@@ -1,6 +1,5 @@
 #include "models/sphere.h"
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 #include "models/median.h"
@@ -89,16 +88,11 @@ using Points = std::vector<Eigen::Vector3d>;
 
 // Through four points; none, or a wild one, if they lie on a circle.
 void AppendThroughFour(const Points& p, std::vector<Ball>* balls) {
-  Eigen::Matrix3d rows;
-  Eigen::Vector3d right;
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d edge = p[static_cast<size_t>(k) + 1] - p[0];
-    rows.row(k) = 2 * edge.transpose();
-    right[k] = edge.squaredNorm();
-  }
-  const Eigen::FullPivLU<Eigen::Matrix3d> lu(rows);
-  if (!lu.isInvertible()) return;
-  const Eigen::Vector3d centre = lu.solve(right);
+  const Eigen::Vector3d a = p[1] - p[0], b = p[2] - p[0], c = p[3] - p[0], bc = b.cross(c);
+  const double volume = a.dot(bc);
+  if (!(std::abs(volume) > 1e-15 * a.norm() * b.norm() * c.norm())) return;
+  const Eigen::Vector3d centre =
+      (a.squaredNorm() * bc + b.squaredNorm() * c.cross(a) + c.squaredNorm() * a.cross(b)) / (2 * volume);
   balls->push_back({p[0] + centre, centre.norm()});
 }
 

@@ -1,5 +1,7 @@
 #include "solver/dense.h"
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -22,9 +24,49 @@ Svd SvdOf(const Eigen::MatrixXd& matrix) {
   return {svd.matrixU(), svd.singularValues(), svd.matrixV()};
 }
 
+Eigen::Matrix3d NearestOrthogonal(const Eigen::Matrix3d& matrix) {
+  const Svd svd = SvdOf(matrix);
+  return svd.u * svd.v.transpose();
+}
+
 SymmetricEigen EigenOf(const Eigen::MatrixXd& symmetric) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric);
   return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
+Cholesky::Cholesky(const Eigen::MatrixXd& matrix) {
+  const Eigen::LLT<Eigen::MatrixXd> llt(matrix);
+  l_ = llt.matrixL();
+  ok_ = llt.info() == Eigen::Success;
+}
+
+Eigen::MatrixXd Cholesky::Solve(const Eigen::MatrixXd& b) const {
+  Eigen::MatrixXd x = SolveLower(b);
+  l_.triangularView<Eigen::Lower>().adjoint().solveInPlace(x);
+  return x;
+}
+
+Eigen::MatrixXd Cholesky::SolveLower(const Eigen::MatrixXd& b) const {
+  Eigen::MatrixXd x = b;
+  l_.triangularView<Eigen::Lower>().solveInPlace(x);
+  return x;
+}
+
+Eigen::MatrixXd SolveSquare(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  return Eigen::PartialPivLU<Eigen::MatrixXd>(A).solve(B);
+}
+
+std::vector<Eigen::Index> IndependentColumns(const Eigen::MatrixXd& matrix, double tolerance) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
+  qr.setThreshold(tolerance);
+  const auto& order = qr.colsPermutation().indices();
+  return {order.begin(), order.begin() + qr.rank()};
+}
+
+Eigen::MatrixXd ProjectOut(const Eigen::MatrixXd& of, const Eigen::MatrixXd& rows) {
+  if (rows.rows() == 0) return rows;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(of);
+  return (qr.householderQ().adjoint() * rows).bottomRows(rows.rows() - qr.rank());
 }
 
 Eigen::MatrixXd LeastSquares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {

@@ -2,6 +2,7 @@
 // from 3 (QR) to 40 seconds (its divide-and-conquer SVD).
 #pragma once
 #include <Eigen/Geometry>
+#include <vector>
 
 namespace scancal {
 
@@ -22,11 +23,36 @@ struct Svd {               // matrix = u diag(values) v'
 // m x n; by one-sided rotations (Golub and Van Loan, 8.6.3), which small values survive.
 Svd SvdOf(const Eigen::MatrixXd& matrix);
 
+Eigen::Matrix3d NearestOrthogonal(const Eigen::Matrix3d& matrix);  // u v' (Golub and Van Loan, 6.4.1)
+
 struct SymmetricEigen {    // symmetric = vectors diag(values) vectors'
   Eigen::VectorXd values;  // ascending
   Eigen::MatrixXd vectors;
 };
 SymmetricEigen EigenOf(const Eigen::MatrixXd& symmetric);
+
+// Symmetric and positive definite: matrix = L L' (Golub and Van Loan, 4.2).
+class Cholesky {
+ public:
+  explicit Cholesky(const Eigen::MatrixXd& matrix);
+  bool ok() const { return ok_; }                              // positive definite
+  const Eigen::MatrixXd& L() const { return l_; }              // lower triangular
+  Eigen::MatrixXd Solve(const Eigen::MatrixXd& b) const;       // X of L L' X = B
+  Eigen::MatrixXd SolveLower(const Eigen::MatrixXd& b) const;  // X of L X = B
+
+ private:
+  Eigen::MatrixXd l_;
+  bool ok_;
+};
+
+// X of A X = B with a regular square A, by elimination with pivots in a column (Golub and Van Loan, 3.4).
+Eigen::MatrixXd SolveSquare(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+// Columns of a matrix that are linearly independent, the longest rest first, until rests are below `tolerance` of the
+// first (QR with pivots of columns, Golub and Van Loan, 5.4.2).
+std::vector<Eigen::Index> IndependentColumns(const Eigen::MatrixXd& matrix, double tolerance);
+// Q' rows, with the columns of Q a basis of what is orthogonal to the columns of `of`, by the same.
+Eigen::MatrixXd ProjectOut(const Eigen::MatrixXd& of, const Eigen::MatrixXd& rows);
 
 // X of least norm among those with least |A X - B|, by complete orthogonal decomposition (Golub and Van Loan, 5.5).
 Eigen::MatrixXd LeastSquares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);

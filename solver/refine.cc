@@ -1,9 +1,9 @@
 #include "solver/refine.h"
 #include <ceres/ceres.h>
 #include <glog/logging.h>
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <optional>
+#include "solver/dense.h"
 
 namespace scancal {
 namespace {
@@ -146,18 +146,18 @@ class ScaledProducts {
  public:
   explicit ScaledProducts(const Eigen::MatrixXd& products, const Eigen::VectorXd& squares)
       : scale_(squares.cwiseMax(1e-300).cwiseSqrt().cwiseInverse()),
-        llt_(scale_.asDiagonal() * products * scale_.asDiagonal()) {}
+        products_(scale_.asDiagonal() * products * scale_.asDiagonal()) {}
   bool ok() const {
     constexpr double kLeft = 1e-4;
-    return llt_.info() == Eigen::Success && (llt_.matrixLLT().diagonal().array() > kLeft).all();
+    return products_.ok() && (products_.L().diagonal().array() > kLeft).all();
   }
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& b) const {
-    return scale_.asDiagonal() * llt_.solve(scale_.asDiagonal() * b);
+    return scale_.asDiagonal() * products_.Solve(scale_.asDiagonal() * b);
   }
 
  private:
   Eigen::VectorXd scale_;
-  Eigen::LLT<Eigen::MatrixXd> llt_;
+  Cholesky products_;
 };
 
 struct Buffers {  // to be used again: they are large

@@ -1,12 +1,12 @@
 #include "solver/weigh.h"
 #include <glog/logging.h>
-#include <Eigen/Cholesky>
+#include "solver/dense.h"
 
 namespace scancal {
 Eigen::MatrixXd Whitening(const Eigen::MatrixXd& covariance) {
-  const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
-  CHECK(llt.info() == Eigen::Success) << "a covariance must be positive definite: every row needs noise of its own";
-  return llt.matrixL().solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
+  const Cholesky cholesky(covariance);
+  CHECK(cholesky.ok()) << "a covariance must be positive definite: every row needs noise of its own";
+  return cholesky.SolveLower(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
 }
 
 Eigen::MatrixXd Instances(const Eigen::VectorXd& derivative, int points, Scope scope) {

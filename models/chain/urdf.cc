@@ -37,11 +37,25 @@ struct Axis {
   Eigen::Vector3d point, along;
 };
 
+// The least turn of z to this direction; of nearly -z the half turn about x first, whose axis is known.
+Eigen::Matrix3d TurnOfZ(const Eigen::Vector3d& direction) {
+  constexpr double kNear = 1e-3;
+  Eigen::Matrix3d first = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  if ((direction + z).norm() < kNear) {
+    first.diagonal() << 1, -1, -1;
+    z = -z;
+  }
+  const Eigen::Vector3d axis = z.cross(direction);
+  const double sine = axis.norm();
+  if (sine == 0) return first;
+  return Eigen::AngleAxisd(std::atan2(sine, z.dot(direction)), axis / sine).toRotationMatrix() * first;
+}
+
 // The axis of the first joint as z, in the base's own frame where that is possible.
 Eigen::Isometry3d FrameOfFirst(const Axis& axis) {
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
-  if ((axis.along - Eigen::Vector3d::UnitZ()).norm() > kSame)
-    frame.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis.along).toRotationMatrix();
+  if ((axis.along - Eigen::Vector3d::UnitZ()).norm() > kSame) frame.linear() = TurnOfZ(axis.along);
   frame.translation() = axis.point - axis.point.dot(axis.along) * axis.along;  // of its points the nearest
   if (frame.translation().norm() < kTiny_mm) frame.translation().setZero();
   return frame;

@@ -1,8 +1,8 @@
 #include "models/line/pseudo_points.h"
 #include <glog/logging.h>
-#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
+#include "solver/dense.h"
 
 namespace scancal {
 
@@ -18,10 +18,9 @@ ProfileFactor Factor(std::span<const double> y, std::span<const double> z, std::
   CHECK_EQ(y.size(), z.size());
   CHECK_EQ(y.size(), weights.size());
   const auto n = std::ssize(y);
-  Eigen::Matrix<double, Eigen::Dynamic, 3> rows = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(n, 3), 3);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(n, 3), 3);
   for (Eigen::Index i = 0; i < n; ++i) rows.row(i) << weights[i], weights[i] * z[i], weights[i] * y[i];
-  const Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 3>> qr(rows);
-  ProfileFactor r = qr.matrixQR().topRows<3>().triangularView<Eigen::Upper>();
+  ProfileFactor r = UpperTriangle(rows);
   for (int k = 0; k < 3; ++k)
     if (r(k, k) < 0) r.row(k) = -r.row(k);
   return r;

@@ -1,6 +1,5 @@
 #include "models/robot_ball/judge.h"
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -477,7 +476,7 @@ void JudgeCheck(const ScreenedFit& fitted, Calibration* result) {
   const Eigen::MatrixXd covariance = CovarianceOfCheck(fitted, *result);
   const auto errors = Eigen::VectorXd::Map(check.after.data(), std::ssize(check.after));
   const double n = static_cast<double>(check.after.size());
-  const double F = errors.dot(Eigen::LLT<Eigen::MatrixXd>(covariance).solve(errors)) / n, mean = errors.mean(),
+  const double F = Cholesky(covariance).SolveLower(errors).squaredNorm() / n, mean = errors.mean(),
                u_mean = std::sqrt(covariance.sum()) / n, p = 2 * FUpperTail(F, n, result->noise_dof),
                p_mean = 2 * FUpperTail(std::pow(mean / u_mean, 2), 1, result->noise_dof);
   if (p < kSuspicious && std::sqrt(F) > HeldOutTest::kMore)

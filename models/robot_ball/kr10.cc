@@ -1,7 +1,6 @@
 // The arm of the simulated experiment: its numbers, and joint angles that bring it somewhere.
 #include <ceres/jet.h>
 #include <glog/logging.h>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -81,9 +80,8 @@ Eigen::Isometry3d PublishedHandEye() {
   printed << 0.0171, 0.9998, 0.0053,  //
       0.9999, -0.0173, 0.0022,        //
       0.0003, 0.0056, -1.0001;
-  const Svd svd = SvdOf(printed);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = svd.u * svd.v.transpose();
+  pose.linear() = NearestOrthogonal(printed);
   pose.translation() << 1.2874, 0.5842, 264.7846;
   return pose;
 }
@@ -107,7 +105,7 @@ std::optional<std::vector<double>> JointsFor(const std::vector<Link>& links, con
   bool near = false;
   for (int k = 0; k < kSteps; ++k) {
     const Motion motion = MotionTo(base_from_flange, links, joints);
-    Vector6 step = motion.by_joints.partialPivLu().solve(motion.to_go);
+    Vector6 step = SolveSquare(motion.by_joints, motion.to_go);
     const double longest = step.cwiseAbs().maxCoeff();
     if (!(longest < 1e6)) return std::nullopt;
     step *= std::min(1.0, kLongestStep_rad / longest);

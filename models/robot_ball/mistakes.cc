@@ -267,17 +267,19 @@ std::vector<Mistake> MistakesOfOrder() {
           {"what was seen is one pose early: each pose goes with the observations of the one before", shifted(-1)}};
 }
 
-// Those of the usual mistakes that explain it best; empty: none does.
+// Those of the usual mistakes that explain it best, of equals the first: a wrist's joint that turns the other way is
+// one that is zero half a turn away, but for its neighbours. Empty: none does.
 std::string Explanation(const Measurements& data, double median) {
   std::vector<Mistake> mistakes = data.links.empty() ? MistakesOfFlanges() : MistakesOfJoints(data.links.size());
   for (Mistake& mistake : MistakesOfOrder()) mistakes.push_back(std::move(mistake));
+  constexpr double kEqual = 0.99;
   std::string best;
   double least = kExplained * std::min(median, 1e6);
   for (const Mistake& mistake : mistakes) {
     Measurements without = data;
     mistake.undo(&without);
     const Start start = Consensus(without, kTrials / 4);
-    if (!(start.median < least)) continue;
+    if (!(start.median < (best.empty() ? 1 : kEqual) * least)) continue;
     least = start.median;
     best = mistake.sentence;
   }

@@ -98,8 +98,8 @@ std::optional<Matrix3d> RotationOfTranslating(const Measurements& points) {
   const Vector3d sigma = svd.values;
   constexpr double kAlongOneLine = 1e-4;  // squared moves: a hundredth of the largest
   if (sigma[0] == 0 || sigma[1] < kAlongOneLine * sigma[0]) return std::nullopt;
-  const double sign = (svd.u * svd.v.transpose()).determinant();
-  return svd.u * Vector3d(1, 1, sign).asDiagonal() * svd.v.transpose();
+  const Matrix3d u = svd.u, v = svd.v;
+  return u * Vector3d(1, 1, u.determinant() * v.determinant()).asDiagonal() * v.transpose();
 }
 
 Station OnlySphere(Station station, int sphere) {

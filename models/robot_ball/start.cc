@@ -29,13 +29,6 @@ int Balls(const std::vector<Station>& stations) {
   return balls;
 }
 
-// What is left of `rows` on the complement of the columns of `of`.
-MatrixXd ProjectOut(const MatrixXd& of, const MatrixXd& rows) {
-  if (rows.rows() == 0) return rows;
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(of);
-  return (qr.householderQ().adjoint() * rows).bottomRows(rows.rows() - qr.rank());
-}
-
 // A triangle T of no more rows than columns with |T x| = |rows x|.
 MatrixXd Triangle(const MatrixXd& rows) {
   if (rows.rows() <= rows.cols()) return rows;
@@ -97,8 +90,7 @@ MatrixXd AllRows(const Measurements& data) {
 
 Matrix3d NearestRotation(Matrix3d matrix) {
   if (matrix.determinant() < 0) matrix = -matrix;  // a singular vector has no sign
-  const Svd svd = SvdOf(matrix);
-  return svd.u * svd.v.transpose();
+  return NearestOrthogonal(matrix);
 }
 
 std::string Names(const std::vector<Station>& stations) {

@@ -1,6 +1,5 @@
 #include "models/robot_ball/tables.h"
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -80,7 +79,8 @@ double MedianSize(const Observations& observations) {
 }
 
 Eigen::Matrix3d SquareRoot(const Eigen::Matrix3d& covariance) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).operatorSqrt();
+  const SymmetricEigen eigen = EigenOf(covariance);
+  return eigen.vectors * eigen.values.cwiseSqrt().asDiagonal() * eigen.vectors.transpose();
 }
 
 std::vector<std::string> NamesOf(const Poses& poses) {

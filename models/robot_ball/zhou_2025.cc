@@ -1,11 +1,9 @@
 // The steps of Zhou et al. 2025: adjustment of the centres, identification by distances.
-#include <ceres/jet.h>
+#include <ceres/ceres.h>
 #include <fmt/format.h>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <unsupported/Eigen/NonLinearOptimization>
 #include "models/robot_ball/published.h"
 #include "solver/dense.h"
 
@@ -147,18 +145,13 @@ std::vector<int> FreeOf(const Measurements& data, Identified identified) {
   return free;
 }
 
-// What MINPACK asks for.
-class Distances {
+class Distances : public ceres::CostFunction {
  public:
-  using Scalar = double;
-  using InputType = VectorXd;
-  using ValueType = VectorXd;
-  using JacobianType = MatrixXd;
-  enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
-
   Distances(const Measurements& data, VectorXd start, Identified identified)
       : data_(data), start_(std::move(start)), free_(FreeOf(data, identified)), pairs_(PairsOf(data)) {
     for (const PairOfPoses& pair : pairs_) rows_ += pair.Rows();
+    set_num_residuals(rows_);
+    mutable_parameter_block_sizes()->push_back(inputs());
   }
   int inputs() const { return static_cast<int>(free_.size()); }
   int values() const { return rows_; }
@@ -169,8 +162,11 @@ class Distances {
     return q;
   }
 
-  int operator()(const VectorXd& x, VectorXd& r) const {
-    const std::vector<SeenPoint> points = Points(x, false);
+  bool Evaluate(double const* const* at, double* residuals, double** jacobians) const override {
+    const VectorXd x = VectorXd::Map(at[0], inputs());
+    auto r = VectorXd::Map(residuals, rows_);
+    const bool derivatives = jacobians && jacobians[0];
+    const std::vector<SeenPoint> points = Points(x, derivatives);
     Index row = 0;
     for (const PairOfPoses& pair : pairs_) {
       const Eigen::Vector3d between = points[pair.a].p_in_base - points[pair.b].p_in_base;
@@ -178,12 +174,9 @@ class Distances {
       else r.segment<3>(row) = between;
       row += pair.Rows();
     }
-    return 0;
-  }
-
-  int df(const VectorXd& x, MatrixXd& J) const {
-    const std::vector<SeenPoint> points = Points(x, true);
-    Index row = 0;
+    if (!derivatives) return true;
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(jacobians[0], rows_, inputs());
+    row = 0;
     for (const PairOfPoses& pair : pairs_) {
       const SeenPoint &a = points[pair.a], &b = points[pair.b];
       if (pair.distance > 0)  // eq. (31)
@@ -191,7 +184,7 @@ class Distances {
       else J.middleRows<3>(row) = a.by_free - b.by_free;
       row += pair.Rows();
     }
-    return 0;
+    return true;
   }
 
  private:
@@ -298,17 +291,24 @@ Result<Kinematics> IdentifyByDistances(const Measurements& data, const Kinematic
         fmt::format("balls seen from different poses of a station give {} distances for {} unknowns: see the "
                     "artifact from more poses at each station",
                     distances.values(), distances.inputs())};
-  Eigen::LevenbergMarquardt<Distances> solver(distances);
-  solver.parameters.xtol = 1e-13;
-  solver.parameters.ftol = 1e-15;
   VectorXd x = distances.Start();
-  using enum Eigen::LevenbergMarquardtSpace::Status;
-  const auto status = solver.minimize(x);
-  if (status == TooManyFunctionEvaluation || status == ImproperInputParameters)
+  ceres::Problem::Options keep;
+  keep.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(keep);
+  problem.AddResidualBlock(&distances, nullptr, x.data());
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = 400;
+  options.function_tolerance = options.gradient_tolerance = 1e-15;
+  options.parameter_tolerance = 1e-13;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  if (summary.termination_type != ceres::CONVERGENCE)
     return Error{
         fmt::format("the distances of the balls have no minimum near the first hand-eye (rms {:.3g} mm after "
                     "{} evaluations): look for swapped balls or poses",
-                    solver.fnorm / std::sqrt(distances.values()), solver.nfev)};
+                    std::sqrt(2 * summary.final_cost / distances.values()), summary.iterations.size())};
   return AsKinematics(distances.All(x));
 }
 

@@ -117,7 +117,7 @@ void Read(bool lidar, size_t profiles, Reader* in, Placement* placement) {
   for (size_t k = 0; k < profiles && in->sound(); ++k) placement->profiles.push_back(ReadProfile(lidar, in));
 }
 
-bool IsCount(const Json& json) { return json.is_number_integer() && json >= 0; }
+bool IsCount(const Json& json) { return json.is_number_integer() && json.get<int64_t>() >= 0; }
 
 // All but what is in segments; nothing if a value is missing or of another kind.
 std::optional<Placement> ReadTarget(const Json& json) {

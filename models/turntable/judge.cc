@@ -1,6 +1,5 @@
 // What may go wrong with planes on a turntable.
 #include <fmt/format.h>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -174,8 +173,10 @@ Result<void> CheckDepths(const std::vector<Placement>& placements) {
     const double sigma = placement.Pure().sigma(), range = volume.y[1] - volume.y[0];
     std::vector<double> thickness;  // of a profile's points: across their line, over along it
     for (const Profile& profile : placement.profiles) {
-      const Eigen::JacobiSVD<Eigen::Matrix2d> svd(profile.factor.bottomRightCorner<2, 2>());
-      thickness.push_back(svd.singularValues()[1] / std::max(svd.singularValues()[0], 1e-12));
+      const Eigen::Matrix2d spread = profile.factor.bottomRightCorner<2, 2>();  // s t = |det|, s^2 + t^2 = |spread|^2
+      const double squares = spread.squaredNorm(), product = std::abs(spread.determinant());
+      const double s = std::sqrt((squares + std::sqrt(std::max(0.0, squares * squares - 4 * product * product))) / 2);
+      thickness.push_back(product / std::max(s * s, 1e-24));
     }
     if (placement.Pure().dof > 100 && sigma > kNoLine * range && sigma > 1 && Median(thickness) > kNoLine)
       return Error{

@@ -1,6 +1,5 @@
 // A placement: what is off the lines of its profiles or off its plane is set aside, the rest compressed.
 #include <glog/logging.h>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -10,6 +9,7 @@
 #include "models/line/robust_line.h"
 #include "models/median.h"
 #include "models/turntable/compress.h"
+#include "solver/dense.h"
 #include "solver/parallel.h"
 
 namespace scancal::turntable {
@@ -147,7 +147,7 @@ RobustPlane FitPlane(const std::vector<Points>& profiles, const std::vector<size
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const size_t k : which)
     for (const Eigen::Vector3d& p : profiles[k]) scatter += (p - plane.through) * (p - plane.through).transpose();
-  plane.normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
+  plane.normal = EigenOf(scatter).vectors.col(0);
   return plane;
 }
 

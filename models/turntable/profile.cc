@@ -1,7 +1,6 @@
 // One profile, compressed, and what errors do to it.
 #include <glog/logging.h>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -34,7 +33,7 @@ std::vector<double> RangesOnLine(std::span<const double> y, std::span<const doub
 // explains in units of the range.
 Eigen::Matrix3d OnesLast(const ProfileFactor& ranged) {
   const Eigen::Matrix3d columns = ranged(Eigen::all, std::vector{2, 1, 0});
-  return Eigen::HouseholderQR<Eigen::Matrix3d>(columns).matrixQR().triangularView<Eigen::Upper>();
+  return Triangle<Eigen::Vector3d>(columns.col(0), columns.col(1), columns.col(2));
 }
 
 // Least squares of depth, or of the range. Of points at one height the level line.

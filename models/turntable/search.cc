@@ -1,5 +1,4 @@
 #include "models/turntable/search.h"
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include "io/progress.h"
@@ -113,8 +112,7 @@ double PlaneStorey::Rmse(double M, double N, PlaneFit fit) const {
 }
 
 std::pair<Eigen::Vector3d, double> PlaneStorey::FitPlane(double M, double N) const {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(Centred(M, N), Eigen::ComputeFullV);
-  Eigen::Vector3d normal = svd.matrixV().col(2);
+  Eigen::Vector3d normal = SvdOf(Centred(M, N)).v.col(2);
   const Eigen::Vector3d mean =
       Eigen::Vector3d(M * mean_[0] - N * mean_[1] + mean_[2], -M * mean_[1] - N * mean_[0] + mean_[3], mean_[4]) /
       root_n_;

@@ -1,7 +1,6 @@
 #include "models/turntable/use.h"
 #include <fmt/format.h>
 #include <glog/logging.h>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 #include <set>
 #include "io/progress.h"
 #include "io/units.h"
+#include "solver/dense.h"
 
 namespace scancal::turntable {
 namespace {
@@ -171,7 +171,7 @@ PropagatedDistance PointUncertainty::Between(const PropagatedPoint& a, const Pro
   if (value > 0) {
     along /= value;
   } else {
-    along = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(by * joint_.matrix * by.transpose()).eigenvectors().col(2);
+    along = EigenOf(by * joint_.matrix * by.transpose()).vectors.col(2);
   }
   return {0, 0, value, UncertaintyOf(joint_, along.transpose() * by)};
 }

@@ -1,6 +1,4 @@
 #include "solver/uncertainty/jackknife.h"
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include "solver/dense.h"
@@ -130,7 +128,7 @@ ExpectedJackknife ExpectLeaveOneTargetOut(const Problem& problem, const Estimate
   std::vector<Eigen::MatrixXd> moves(m);
   Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(n, n * static_cast<Eigen::Index>(m));
   for (size_t i = 0; i < m; ++i) {
-    const Eigen::MatrixXd without = (information - scores[i].information).inverse();
+    const Eigen::MatrixXd without = SolveSquare(information - scores[i].information, Eigen::MatrixXd::Identity(n, n));
     moves[i].resize(n, mean.cols());
     for (size_t j = 0; j < m; ++j)
       moves[i].middleCols(static_cast<Eigen::Index>(j) * n, n) =
@@ -208,7 +206,7 @@ std::vector<TargetTest> TestTargets(const Problem& problem, const Estimate& fit,
     add(scored(considered.common.middleRows(n * static_cast<Eigen::Index>(t), n)), common);
     TargetTest& test = tests[t];
     test.dof1 = static_cast<double>(shared.size());
-    const Eigen::VectorXd whitened = Eigen::LLT<Eigen::MatrixXd>(covariance).solve(score);
+    const Eigen::VectorXd whitened = Cholesky(covariance).Solve(score);
     test.F = score.dot(whitened) / test.dof1;
     test.p = std::min(1.0, static_cast<double>(m) * FUpperTail(test.F, test.dof1, noise_dof));
     test.moves = to_y.solve(basis * ((1 - part).inverse().matrix().asDiagonal() * (of_noise * whitened)));
@@ -251,7 +249,7 @@ HeldOutTest TestHeldOut(const Problem& held_out, const Estimate& at, const Eigen
   }
   // (I + L S L')^-1 = I - L (I + S L'L)^-1 S L' (Woodbury); S may be singular, L'L, too.
   const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(n, n) + covariance * information;
-  test.F = (squares - score.dot(inner.partialPivLu().solve(covariance * score))) / test.dof1;
+  test.F = (squares - score.dot(SolveSquare(inner, covariance * score).col(0))) / test.dof1;
   test.p = FUpperTail(test.F, test.dof1, noise_dof);
   return test;
 }

@@ -1,5 +1,4 @@
 #include "solver/uncertainty/misfit.h"
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -178,8 +177,8 @@ std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit,
     misfit.unit = quantity.unit;
     misfit.dof1 = static_cast<double>(visible.value.size());
     misfit.dof2 = noise_dof;
-    const Eigen::LLT<Eigen::MatrixXd> covariance(visible.covariance);
-    misfit.F = visible.value.dot(covariance.solve(visible.value)) / misfit.dof1;
+    const Cholesky covariance(visible.covariance);
+    misfit.F = covariance.SolveLower(visible.value).squaredNorm() / misfit.dof1;
     misfit.p = FUpperTail(misfit.F, misfit.dof1, misfit.dof2);
     if (columns[s].left.cols() == 1) {
       misfit.size = visible.value[0] * visible.directions(0, 0);
@@ -188,7 +187,7 @@ std::vector<MisfitTest> TestMisfits(const Problem& problem, const Estimate& fit,
       // Method of moments (Searle, Casella and McCulloch, Variance Components, 1992, ch. 5): the mean square that noise
       // and declaration leave unexplained, equal for all instances.
       const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(visible.value.size(), visible.value.size());
-      misfit.size = std::sqrt(std::max(0.0, (misfit.F - 1) * misfit.dof1 / covariance.solve(identity).trace()));
+      misfit.size = std::sqrt(std::max(0.0, (misfit.F - 1) * misfit.dof1 / covariance.Solve(identity).trace()));
       misfit.moves = Plain(columns[s].moves.rowwise().norm() * misfit.size);
     }
   }
@@ -255,7 +254,7 @@ Change FindChange(const Problem& problem, const Estimate& fit, const Linearizati
     Eigen::MatrixXd covariance = eigen.values(seen).asDiagonal();
     covariance += score.rightCols(considered.cols()) * score.rightCols(considered.cols()).transpose();
     const double dof = static_cast<double>(seen.size());
-    const double F = score.col(0).dot(Eigen::LLT<Eigen::MatrixXd>(covariance).solve(score.col(0))) / dof;
+    const double F = Cholesky(covariance).SolveLower(score.col(0)).squaredNorm() / dof;
     const double p = FUpperTail(F, dof, noise_dof);
     if (p > best.p || (p == best.p && F < best.F)) continue;
     const Eigen::VectorXd step =

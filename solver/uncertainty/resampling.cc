@@ -1,8 +1,8 @@
 #include "solver/uncertainty/resampling.h"
 #include <glog/logging.h>
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include "solver/dense.h"
 #include "solver/parallel.h"
 #include "solver/random.h"
 #include "solver/uncertainty/monte_carlo.h"
@@ -54,9 +54,9 @@ Eigen::MatrixXd Unpacked(const Eigen::VectorXd& packed, Eigen::Index columns) {
 }
 
 // Of what should be near the identity: no direction is nearly lost.
-bool IsRegular(const Eigen::LLT<Eigen::MatrixXd>& products) {
+bool IsRegular(const Cholesky& products) {
   constexpr double kLost = 1e-5;
-  return products.info() == Eigen::Success && (products.matrixLLT().diagonal().array() > kLost).all();
+  return products.ok() && (products.L().diagonal().array() > kLost).all();
 }
 
 constexpr int kReplicates = 500;  // a standard deviation to 3 %
@@ -186,12 +186,12 @@ Bootstrap ResampleViews(const Problem& problem, const Linearization& linear, int
       const Eigen::MatrixXd drawn = Unpacked(sum, own + n + 1);
       left += drawn.bottomRightCorner(n + 1, n + 1);
       if (own == 0) continue;
-      const Eigen::LLT<Eigen::MatrixXd> of_own(drawn.topLeftCorner(own, own));
+      const Cholesky of_own(drawn.topLeftCorner(own, own));
       if (!IsRegular(of_own)) return;
-      left -= drawn.bottomLeftCorner(n + 1, own) * of_own.solve(drawn.topRightCorner(own, n + 1));
+      left -= drawn.bottomLeftCorner(n + 1, own) * of_own.Solve(drawn.topRightCorner(own, n + 1));
     }
-    const Eigen::LLT<Eigen::MatrixXd> of_system(left.topLeftCorner(n, n));
-    if (IsRegular(of_system)) moves[replicate] = -to_basis * of_system.solve(left.topRightCorner(n, 1));
+    const Cholesky of_system(left.topLeftCorner(n, n));
+    if (IsRegular(of_system)) moves[replicate] = -to_basis * of_system.Solve(left.topRightCorner(n, 1));
   });
   std::erase_if(moves, [](const Eigen::VectorXd& move) { return move.size() == 0; });
   Bootstrap result;

@@ -1,5 +1,4 @@
 #include "solver/uncertainty/variances.h"
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -126,7 +125,7 @@ void RestrictedLikelihood::Finish() {
 
 Eigen::MatrixXd RestrictedLikelihood::Curvature() const {
   const Eigen::MatrixXd observed = 2 * average_ - information_;
-  return Eigen::LLT<Eigen::MatrixXd>(observed).info() == Eigen::Success ? observed : average_;
+  return Cholesky(observed).ok() ? observed : average_;
 }
 
 struct Sources {

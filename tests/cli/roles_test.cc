@@ -182,7 +182,7 @@ TEST_F(RolesTest, WhatIsConsideredIsNoCorrelationOfNeighbours) {
   Simulate(Path("tilted"), {"--tilt_x=0.5", "--noise=0.01"});
   Append(Path("tilted") / "dataset.yaml", "parameters: {tilt_x: {consider: 0, u: 0.5}}\n");
   const Json result = Refined(Path("tilted"));
-  EXPECT_GT(result["neighbours"], 0.2);
+  EXPECT_GT(result["neighbours"].get<double>(), 0.2);
   EXPECT_THAT(Sentences(result, "warnings"), Not(HasSubstr("neighbouring views")));
 }
 

@@ -102,8 +102,8 @@ TEST_F(MukcaPandaTest, TheCalibrationSaysWhatItKnows) {
   const Json result = Result();
   for (const Json& parameter : result["parameters"]) {
     if (parameter["role"] != "estimate") continue;
-    EXPECT_GT(parameter["u"], 0) << parameter["name"];
-    EXPECT_LT(parameter["u"], parameter["unit"] == "mm" ? 0.6 : 1.2e-3) << parameter["name"];
+    EXPECT_GT(parameter["u"].get<double>(), 0) << parameter["name"];
+    EXPECT_LT(parameter["u"].get<double>(), parameter["unit"] == "mm" ? 0.6 : 1.2e-3) << parameter["name"];
   }
   EXPECT_NEAR(ValueOf(result, "theta_4"), -0.0224, 1e-3);  // 1.3 degrees: what makes the nominal robot bad
   EXPECT_EQ(result["check"]["pairs"], 7);

@@ -55,7 +55,7 @@ TEST_F(TiltingLidarTest, ItsOffsetsComeOutWhereTheDrawingHasThem) {
   for (const Json& target : result["targets"]) {
     set_aside += target["set_aside"].get<double>();
     missing += target["missing"].get<double>();
-    EXPECT_GT(target["points"], 100) << target["name"];
+    EXPECT_GT(target["points"].get<double>(), 100) << target["name"];
   }
   EXPECT_GT(set_aside, 0);
   EXPECT_GT(missing, 0);

@@ -6,9 +6,9 @@
 // parallel to the axis.
 #pragma once
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <cmath>
 #include <vector>
+#include "solver/dense.h"
 #include "solver/grid_search.h"
 
 namespace scancal::zhao_2021 {
@@ -38,7 +38,7 @@ inline Plane FitPlane(const std::vector<Eigen::Vector3d>& points) {
     D.row(i) << points[i].x(), points[i].y(), 1;  // (9), (10)
     delta[i] = points[i].z();                     // (12)
   }
-  const Eigen::Vector3d phi = D.householderQr().solve(delta);  // (13), the same minimum without forming D'D
+  const Eigen::Vector3d phi = LeastSquares(D, delta);  // (13), the same minimum without forming D'D
   return {phi[0], phi[1], phi[2]};
 }
 

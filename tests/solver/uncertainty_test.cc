@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 #include "solver/calibrate.h"
+#include "solver/dense.h"
 #include "solver/uncertainty/budget.h"
 #include "solver/uncertainty/covariance.h"
 #include "solver/uncertainty/gum.h"
@@ -85,7 +86,7 @@ TEST(Budget, EqualsTheTextbookForEveryScope) {
     }
   }
   v += 1e-4 * squared * squared.transpose();
-  const Eigen::MatrixXd gain = (j.transpose() * j).ldlt().solve(j.transpose());
+  const Eigen::MatrixXd gain = LeastSquares(j, Eigen::MatrixXd::Identity(j.rows(), j.rows()));
   const double expected = (gain * v * gain.transpose())(0, 0);
   EXPECT_NEAR(budget.Total()(0, 0), expected, 1e-12 * expected);
   ASSERT_EQ(budget.lines.size(), 3u);

@@ -28,13 +28,13 @@ class RobotPointsTest : public RobotFilesTest {
   void WritePoints(const std::string& file, const Eigen::Vector3d& centre, int n, double radius = kRadius,
                    double lowest = 0.5) const {
     Random random(std::hash<std::string>()(file), 0);
-    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -centre);
+    const Eigen::Vector3d z = -centre.normalized(), x = z.unitOrthogonal(), y = z.cross(x);
     std::string text = "x,y,z\n";
     for (int k = 0; k < n; ++k) {
       const double c = lowest + (1 - lowest) * random.Uniform(), s = std::sqrt(1 - c * c);
       const double phi = 2 * std::numbers::pi * random.Uniform();
-      const Eigen::Vector3d p = centre + (radius + kNoise * random.Normal()) *
-                                             (turn * Eigen::Vector3d(s * std::cos(phi), s * std::sin(phi), c));
+      const Eigen::Vector3d p =
+          centre + (radius + kNoise * random.Normal()) * (s * std::cos(phi) * x + s * std::sin(phi) * y + c * z);
       text += Numbers({p[0], p[1], p[2]}) + "\n";
     }
     folder_.Write(file, text);
@@ -55,7 +55,7 @@ TEST_F(RobotPointsTest, CentresAndTheirCovariance) {
       const Model::View& view = data.stations[p / 3].views[p % 3];
       for (size_t k = 0; k < 5; ++k) {
         const Eigen::Vector3d off = view.balls[k].centre - Seen(p, k);
-        squares += off.dot(Covariance(data, view.balls[k]).llt().solve(off));
+        squares += off.dot(Covariance(data, view.balls[k]).inverse() * off);
       }
     }
     EXPECT_NEAR(squares / 90, 1, 4 * std::sqrt(2.0 / 90)) << diameter;  // chi squared of 90 degrees of freedom

@@ -97,7 +97,7 @@ TEST(PointUncertainty, EqualsTheScatterOfRepeatedCalibrations) {
                           error = there.position - b;
     scatter += error.array().square() / kTrials;
     stated += there.uncertainty.covariance.diagonal().array() / kTrials;
-    normalised += error.dot(there.uncertainty.covariance.llt().solve(error)) / 3 / kTrials;
+    normalised += Cholesky(there.uncertainty.covariance).SolveLower(error).squaredNorm() / 3 / kTrials;
     const PropagatedDistance distance = points.Between(here, there);
     of_distance += std::pow(distance.value - (b - a).norm(), 2) / kTrials;
     stated_distance += distance.uncertainty.covariance(0, 0) / kTrials;
