@@ -19,6 +19,7 @@
 #include "apps/command.h"
 #include "apps/done.h"
 #include "io/input_file.h"
+#include "io/json_file.h"
 #include "io/message.h"
 #include "io/output_file.h"
 #include "report/text.h"

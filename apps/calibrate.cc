@@ -69,7 +69,8 @@ Result<Calibrated> Calibrate(const std::vector<std::string>& arguments, RefineCh
   SCANCAL_ASSIGN_OR_RETURN(calibration.inputs, inputs.get());
   calibration.command = CommandLine();
   calibration.version = SCANCAL_VERSION;
-  Enclosures with{.certificate = scanner->dataset().certificate};
+  Enclosures with;
+  if (const auto& certificate = scanner->dataset().certificate) with.certificate = *certificate;
   SCANCAL_ASSIGN_OR_RETURN(with.data, scanner->Data());
   SCANCAL_RETURN_IF_ERROR(WriteJson(file, ToJson(calibration, with)));
   if (key) SCANCAL_RETURN_IF_ERROR(key->Sign(file));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include "apps/command.h"
 #include "io/input_file.h"
+#include "io/json_file.h"
 
 DECLARE_bool(report);
 DECLARE_string(sign);

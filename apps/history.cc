@@ -6,6 +6,7 @@
 #include <numeric>
 #include "apps/command.h"
 #include "apps/recheck.h"
+#include "io/json_file.h"
 #include "io/output_file.h"
 #include "models/models.h"
 #include "report/difference.h"

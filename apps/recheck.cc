@@ -5,6 +5,7 @@
 #include <cstdio>
 #include "apps/command.h"
 #include "io/input_file.h"
+#include "io/json_file.h"
 #include "io/signature.h"
 #include "models/models.h"
 #include "report/calibration_json.h"
@@ -61,8 +62,8 @@ Result<void> CheckKey(const char* key, const Json& calibrated, const Json& used,
 }
 
 Json ItemOf(const Dataset& dataset) {
-  const Json certificate = dataset.certificate;
-  return certificate.is_object() && certificate.contains("item") ? certificate["item"] : Json();
+  const Json* certificate = dataset.certificate.get();
+  return certificate && certificate->is_object() && certificate->contains("item") ? certificate->at("item") : Json();
 }
 
 Json ValueOf(const Json& object, const char* key) {
@@ -155,7 +156,7 @@ Result<Rechecked> Recheck(const std::filesystem::path& file, bool monte_carlo) {
   keys.same_keys = same_version;
   if (!monte_carlo) keys.without.insert({"montecarlo", "warnings"});
   Enclosures with;
-  with.certificate = result.scanner->dataset().certificate;
+  if (const auto& certificate = result.scanner->dataset().certificate) with.certificate = *certificate;
   result.agreement = CompareResults(result.file, ToJson(*result.again, with), keys);
   if (result.agreement.first) SCANCAL_RETURN_IF_ERROR(differs(*result.agreement.first));
   return result;

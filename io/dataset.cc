@@ -1,4 +1,5 @@
 #include "io/dataset.h"
+#include <nlohmann/json.hpp>
 #include <utility>
 #include "io/input_file.h"
 #include "io/message.h"
@@ -148,7 +149,7 @@ Result<Dataset> ParseDataset(std::string text, const std::filesystem::path& file
   dataset.units = ReadUnits(yaml.Map("units"));
   if (yaml.Has("parameters")) dataset.parameters = ReadParameters(yaml.Map("parameters"));
   if (yaml.Has("influences")) dataset.influences = ReadInfluences(yaml.Map("influences"));
-  if (yaml.Has("certificate")) dataset.certificate = yaml.Json("certificate");
+  if (yaml.Has("certificate")) dataset.certificate = std::make_shared<const Json>(yaml.Json("certificate"));
   SCANCAL_RETURN_IF_ERROR(yaml.Check());
   return dataset;
 }

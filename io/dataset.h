@@ -1,9 +1,11 @@
 // dataset.yaml: the half that every model shares. The rest is taken by the model from `yaml`, which then says Finish().
 #pragma once
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
+#include "io/json.h"
 #include "io/result.h"
 #include "io/units.h"
 #include "io/yaml.h"
@@ -32,9 +34,9 @@ struct Dataset {
   Units units;
   std::vector<ParameterSetting> parameters;
   std::vector<InfluenceSetting> influences;
-  nlohmann::json certificate;  // null if absent
-  YamlMap yaml;                // what is left for the model
-  std::string urdf;            // what the URDF says that it names, where calibration.json kept it; empty: it is read
+  std::shared_ptr<const Json> certificate;  // null if absent
+  YamlMap yaml;                             // what is left for the model
+  std::string urdf;  // what the URDF says that it names, where calibration.json kept it; empty: it is read
 };
 
 // {length: mm, angle: deg}; what it leaves out is as `otherwise` says, or else required.

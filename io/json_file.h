@@ -4,12 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include "io/json.h"
 #include "io/result.h"
 
 namespace scancal {
 
-// Keys keep the order in which they were put in.
-using Json = nlohmann::ordered_json;
 Result<Json> ReadJson(const std::filesystem::path& path);  // up to 1 GiB; errors with file:line:column
 // Through OutputFile, two spaces, lists of values on one line, final newline.
 Result<void> WriteJson(const std::filesystem::path& path, const Json& json);

@@ -1,5 +1,6 @@
 #include "models/scanner.h"
 #include <fmt/format.h>
+#include "io/json_file.h"
 #include "io/message.h"
 #include "io/progress.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 #include "io/dataset.h"
-#include "io/json_file.h"
+#include "io/json.h"
 #include "io/points.h"
 #include "io/result.h"
 #include "solver/calibration.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 #include "io/input_file.h"
+#include "io/json_file.h"
 #include "io/message.h"
 #include "models/chain/urdf.h"
 #include "models/scanner.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 #include "io/dataset.h"
-#include "io/json_file.h"
+#include "io/json.h"
 #include "io/table.h"
 #include "models/chain/chain.h"
 #include "models/chain/orientation.h"

@@ -1,4 +1,5 @@
 // What a calibration.json is good for: the same robot again, and where it has its ball.
+#include "io/json_file.h"
 #include "models/chain/tables.h"
 #include "models/flange_ball/scanner.h"
 

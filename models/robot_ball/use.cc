@@ -1,5 +1,6 @@
 // What a calibration.json is good for: the same robot again, and ball centres in its base.
 #include <limits>
+#include "io/json_file.h"
 #include "models/chain/tables.h"
 #include "models/robot_ball/scanner.h"
 #include "models/robot_ball/start.h"

@@ -1,6 +1,7 @@
 #include "models/robot_profiler/scanner.h"
 #include <fmt/format.h>
 #include <cmath>
+#include "io/json_file.h"
 #include "io/units.h"
 #include "models/chain/tables.h"
 

@@ -11,7 +11,7 @@
 #include <span>
 #include <string>
 #include <vector>
-#include "io/json_file.h"
+#include "io/json.h"
 #include "io/result.h"
 #include "models/line/noise.h"
 #include "models/turntable.h"

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include "io/input_file.h"
+#include "io/json_file.h"
 #include "models/scanner.h"
 #include "models/turntable/compress.h"
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <mutex>
 #include <numeric>
+#include "io/json_file.h"
 #include "io/output_file.h"
 #include "io/progress.h"
 #include "models/turntable/planes_file.h"

@@ -1,6 +1,7 @@
 #include "io/dataset.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include "tests/io/temporary_folder.h"
 
 namespace scancal {
@@ -48,7 +49,8 @@ TEST_F(DatasetTest, ReadsWhatEveryModelShares) {
   EXPECT_EQ(dataset->units.length, "m");
   EXPECT_EQ(dataset->units.length_in_mm, 1000);
   EXPECT_EQ(dataset->units.angle_in_rad, 1);
-  EXPECT_EQ(dataset->certificate["owner"], "lab");
+  ASSERT_TRUE(dataset->certificate);
+  EXPECT_EQ(dataset->certificate->at("owner").get<std::string>(), "lab");
 
   ASSERT_EQ(dataset->parameters.size(), 6U);
   const auto& parameters = dataset->parameters;
@@ -86,7 +88,7 @@ TEST_F(DatasetTest, OptionalPartsMayBeAbsent) {
   ASSERT_TRUE(dataset.ok()) << dataset.error().message;
   EXPECT_THAT(dataset->name, IsEmpty());
   EXPECT_THAT(dataset->parameters, IsEmpty());
-  EXPECT_TRUE(dataset->certificate.is_null());
+  EXPECT_FALSE(dataset->certificate);
   EXPECT_TRUE(dataset->yaml.Finish().ok());
 }
 

@@ -1,6 +1,7 @@
 // The line profiler on a robot: it passes the contract, finds its hand-eye from nothing, and says what it cannot tell.
 #include <gmock/gmock.h>
 #include <numbers>
+#include "io/json_file.h"
 #include "models/models.h"
 #include "models/robot_profiler/scanner.h"
 #include "models/robot_profiler/simulate.h"

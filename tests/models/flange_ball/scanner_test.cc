@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <cmath>
 #include <sstream>
+#include "io/json_file.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/models/flange_ball/scene.h"
 

@@ -1,5 +1,6 @@
 // The robot with a scanner passes the contract.
 #include <algorithm>
+#include "io/json_file.h"
 #include "models/robot_ball/fit.h"
 #include "models/robot_ball/scanner.h"
 #include "models/robot_ball/simulate.h"

@@ -1,4 +1,5 @@
 // What a robot's data set may say, and what comes of it.
+#include "io/json_file.h"
 #include "models/chain/urdf.h"
 #include "models/robot_ball/scanner.h"
 #include "tests/models/robot_ball/files.h"
