@@ -103,8 +103,10 @@ class Calibration(dict):
 
     @property
     def traceable(self) -> bool:
-        """Something systematic was declared (type B): else u is of repeatability and fit only."""
-        return any(line.get("type") == "B" and not line.get("random") for line in self.get("budget") or [])
+        """Something systematic was declared (type B): else u is of repeatability and fit only. What is anew in every
+        view or point is noise, declared or not."""
+        noise = {each["source"] for each in self.get("influences") or [] if each.get("scope") in ("view", "point")}
+        return any(line.get("type") == "B" and line["source"] not in noise for line in self.get("budget") or [])
 
 
 def read_calibration(file: Path) -> Calibration:

@@ -47,6 +47,27 @@ def draw(chart: dict, history: dict, t: Language) -> style.Figure:
     return figure
 
 
+def alarms(history: dict, t: Language) -> list[str]:
+    """What the program says of the charts, in the reader's language: points beyond the limits, the first alarm of
+    CUSUM, drifts."""
+    told = []
+    for chart in history["charts"]:
+        named = list(zip(history["calibrations"], chart["points"]))
+        told += [t("history.beyond", name=chart["name"], calibration=calibration,
+                   deviation=t.number(f"{point['deviation']:+.1f}".replace("-", notation.MINUS)))
+                 for calibration, point in named if point["beyond"]]
+        first = next(((calibration, point) for calibration, point in named if point["alarm"]), None)
+        if first:
+            told.append(t("history.larger" if first[1]["up"] > first[1]["down"] else "history.smaller",
+                          name=chart["name"], calibration=first[0]))
+        if chart["drifts"]:
+            told.append(t(f"history.drifts.{history['unit_of_time']}", name=chart["name"],
+                          slope=t.number(notation.concise(chart["slope"], chart["u_slope"])),
+                          unit="" if chart["unit"] == "1" else " " + chart["unit"],
+                          ratio=t.number(f"{abs(chart['slope']) / chart['u_slope']:.1f}")))
+    return told
+
+
 def render(history: dict, t: Language, fonts: Path | None = None) -> str:
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True,
                                      undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
@@ -55,7 +76,7 @@ def render(history: dict, t: Language, fonts: Path | None = None) -> str:
     figures = {chart["name"]: Markup(style.to_svg(draw(chart, history, t), f"history-{k}", chart["name"], t))
                for k, chart in enumerate(history["charts"])}
     return environment.get_template("history.html").render(
-        t=t, h=history, figures=figures, fonts=Markup(font_faces(fonts)),
+        t=t, h=history, alarms=alarms(history, t), figures=figures, fonts=Markup(font_faces(fonts)),
         css=Markup((TEMPLATES / "page.css").read_text(encoding="utf-8")))
 
 

@@ -3,6 +3,7 @@ import math
 import re
 
 MINUS = "\N{MINUS SIGN}"
+_MICROMETRES = r"(?<=\d )um\b(?! [±+−]?\d)"  # in German "um" is a word, too: by
 
 
 def significant(value: float | None, digits: int = 2) -> str:
@@ -58,9 +59,18 @@ def p_value(p: float | None) -> str:
 
 def in_sentence(text: str) -> str:
     """What the program says in plain letters as the page writes it: true minus signs, powers of ten, micrometres."""
-    text = re.sub(r"\b(\d+(?:[.,]\d+)?)e([+-]?\d+)\b",
-                  lambda found: ("" if found[1] == "1" else f"{found[1]} × ") + f"10{_superscript(int(found[2]))}", text)
-    return re.sub(r"\bum\b", "µm", re.sub(r"(?<![\w.,])-(?=\d)", MINUS, text))
+    text = re.sub(r"\b(\d+(?:[.,]\d+)?)e([+-]?\d+)\b", _power, text)
+    return re.sub(_MICROMETRES, "µm", re.sub(r"(?<![\w.,])-(?=\d)", MINUS, text))
+
+
+def _power(found: re.Match) -> str:
+    """1.6e+03 is 1600: a power of ten only where significant() has one."""
+    mantissa, exponent = found[1], int(found[2])
+    if 0 <= exponent < 6:
+        whole, _, decimals = mantissa.replace(",", ".").partition(".")
+        if len(decimals) <= exponent:
+            return whole + decimals.ljust(exponent, "0")
+    return ("" if mantissa == "1" else f"{mantissa} × ") + f"10{_superscript(exponent)}"
 
 
 def length_unit(largest_mm: float) -> tuple[float, str]:

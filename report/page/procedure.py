@@ -2,7 +2,7 @@
 import volume
 from calibration import Calibration
 from language import Language
-from notation import count, shortened, significant
+from notation import MINUS, count, shortened, significant
 
 FEW_NAMES, LONGEST_NAME = 6, 40
 COORDINATES = 3  # of a ball: what a robot's targets count as points
@@ -60,8 +60,11 @@ def _start(c: Calibration, t: Language) -> str:
     grid, search = c.get("grid") or {}, c.table("surface", "search")
     if not grid.get("nodes"):
         return ""
-    intervals = [t("procedure.interval", name=name, lower=t.number(f"{search[name].min():g}"),
-                   upper=t.number(f"{search[name].max():g}"))
+    intervals = [t("procedure.interval", name=name, lower=_node(search[name].min(), t), upper=_node(search[name].max(), t))
                  for name in ("M", "N") if name in search and len(search)]
     return t("procedure.start_over" if intervals else "procedure.start", intervals=", ".join(intervals),
              step=t.number(f"{grid.get('step') or 0:g}"), nodes=count(grid["nodes"]))
+
+
+def _node(number: float, t: Language) -> str:
+    return t.number(f"{number:g}".replace("-", MINUS))

@@ -38,6 +38,7 @@ for font in FONT_FILES.values():
 matplotlib.rcParams.update({
     "font.family": ["Inter", "DejaVu Sans"], "font.size": 9, "axes.titlesize": 9, "axes.labelsize": 9,
     "xtick.labelsize": 8, "ytick.labelsize": 8, "legend.fontsize": 8, "figure.titlesize": 10,
+    "figure.facecolor": "none", "axes.facecolor": "none",  # a phone's hint that there is more lies behind them
     "text.color": INK, "axes.labelcolor": INK, "xtick.color": INK, "ytick.color": INK, "axes.edgecolor": MUTED,
     "axes.linewidth": 0.7, "xtick.major.width": 0.7, "ytick.major.width": 0.7, "axes.spines.top": False,
     "axes.spines.right": False, "axes.titlelocation": "left", "axes.titleweight": "semibold", "axes.axisbelow": True,

@@ -24,7 +24,7 @@ def caption(c: Calibration, t) -> dict[str, str]:
     how = t("figure.budget.by_source" if few else "figure.budget.by_parameter")
     rest = len(c.estimated) - MOST_BARS
     left_out = " " + t("figure.budget.left_out", shown=MOST_BARS, left_out=rest) if rest > 0 else ""
-    return {"how": how, "left_out": left_out}
+    return {"what": t(f"figure.budget.{'reliable' if c.is_reliable else 'unreliable'}", how=how), "left_out": left_out}
 
 
 def table_of_shares(c: Calibration, t, most: int, least: float) -> list[tuple[str, str, list[float]]]:
@@ -52,9 +52,7 @@ def _by_source(c: Calibration, t) -> style.Figure:
                        edgecolor=style.PRIMARY, hatch="////" if declared else "")
             panel.annotate(t.number(f"{100 * of[k]:.1f}") + " %", (100 * of[k], row), (4, 0),
                            textcoords="offset points", va="center", fontsize=8)
-        factor, unit = axis_unit(parameter)
-        u = t.number(significant(factor * known(parameter.get("u"))))
-        panel.set_title(f"u({shortened(parameter['name'])}) = {u} {unit}")
+        panel.set_title(_title(parameter, c, t))
         panel.set_xlim(0, 100 / (1 - min(0.6, label_inches / panel_inches)))
         panel.set_xticks([0, 50, 100])
         panel.spines["bottom"].set_bounds(0, 100)
@@ -64,6 +62,12 @@ def _by_source(c: Calibration, t) -> style.Figure:
     axes[0, 0].set_yticks(range(len(lines)), names)
     axes[0, 0].invert_yaxis()
     return figure
+
+
+def _title(parameter: dict, c: Calibration, t) -> str:
+    """With its u, where that is a result."""
+    name, (factor, unit) = shortened(parameter["name"]), axis_unit(parameter)
+    return f"u({name}) = {t.number(significant(factor * known(parameter.get('u'))))} {unit}" if c.is_reliable else name
 
 
 def _by_parameter(c: Calibration, t) -> style.Figure:

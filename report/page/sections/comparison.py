@@ -9,6 +9,8 @@ VALUES = ["M/mm", "N/mm", "ΔM/u", "ΔN/u", "tilt_x/mrad", "tilt_y/mrad"]  # in 
 WHOLE = ["nodes, iter."]
 ALIKE = ["S/um", "plane rms/um", "held out/um"]  # of which a table has a sentence where they are
 SAME = 0.01  # part of the largest: what lies so close tells no method from another
+MOST_MICROMETRES = 1000
+NOTHING = 5e-4  # u
 ROUGH = ["ΔM/u", "ΔN/u"]  # two digits are enough, as for single lengths
 
 
@@ -16,18 +18,35 @@ def content(c, previous, t) -> dict[str, object]:
     rows = methods(c)
     shown = [column for column in columns(rows) if not _says_nothing(column, rows)]
     notes = list(dict.fromkeys(row["note"] for row in rows if row.get("note")))
+    decimals = {column: _decimals(cell(rows[-1], column)) for column in VALUES[:2]} if rows else {}
     if not c.is_reliable:  # no u behind a value
-        rows = [row | {"cells": [_without_u(each) for each in row.get("cells") or []]} for row in rows]
+        rows = [row | {"cells": [each | {"u": None} for each in row.get("cells") or []]} for row in rows]
+    rows = [row | {"decimals": decimals} for row in rows]
     tables = [_table(part, k == 0, rows, notes, t) for k, part in enumerate(_parts(shown, rows, t))]
     return {"tables": tables, "alike": _alike(rows, t), "notes": [(_mark(k), t.sentence(note)) for k, note in enumerate(notes)],
             "about": t(f"comparison.about.{c['model']}")}
 
 
-def _without_u(of: dict) -> dict:
-    """The value to the digits that a u would leave it."""
-    if not of.get("u") or of.get("value") is None:
-        return of
-    return of | {"u": None, "value": float(to_last_digit_of(of["u"], of["value"]).replace(MINUS, "-"))}
+def _decimals(reference: dict) -> int | None:
+    """To which its u leaves a value: those of all that stand in its column without one."""
+    if not reference.get("u") or reference.get("value") is None:
+        return None
+    return len(to_last_digit_of(reference["u"], reference["value"]).partition(".")[2])
+
+
+def _rounded(value: float, decimals: int | None) -> str:
+    return significant(value, 6) if decimals is None else f"{value:.{decimals}f}".replace("-", MINUS)
+
+
+def _in_mm(column: str, rows: list[dict]) -> bool:
+    """Micrometres are no unit for millimetres."""
+    largest = max((abs(value) for row in rows if (value := cell(row, column).get("value")) is not None), default=0)
+    return column.endswith("/um") and largest >= MOST_MICROMETRES
+
+
+def _title(column: str, rows: list[dict], t) -> str:
+    title = column_title(column, t)
+    return title.replace("µm", "mm") if _in_mm(column, rows) else title
 
 
 def _alike(rows: list[dict], t) -> str:
@@ -36,8 +55,9 @@ def _alike(rows: list[dict], t) -> str:
     for column in ALIKE:
         known = [value for row in rows if (value := cell(row, column).get("value")) is not None]
         if known and max(known) - min(known) < SAME * max(known):
-            name, _, unit = column_title(column, t).replace("\u00a0", " ").partition(" / ")
-            least, most = (t.number(significant(end, 3)) for end in (min(known), max(known)))
+            name, _, unit = _title(column, rows, t).replace("\u00a0", " ").partition(" / ")
+            factor = 1e-3 if _in_mm(column, rows) else 1
+            least, most = (t.number(significant(factor * end, 3)) for end in (min(known), max(known)))
             told.append(t("comparison.alike.one" if least == most else "comparison.alike.range", name=name,
                           least=least, most=most, unit=unit))
     return t("comparison.alike.about", told=", ".join(told)) if told else ""
@@ -63,7 +83,7 @@ def _parts(shown: list[str], rows: list[dict], t) -> list[list[str]]:
     for group in (first, [column for column in shown if column not in first]):
         left = 0
         for column in group:
-            width = 2 + max([len(word) for word in column_title(column, t).split()]
+            width = 2 + max([len(word) for word in _title(column, rows, t).split()]
                             + [len(_text(row, column, rows, t)) for row in rows])
             if width > left:
                 parts.append([])
@@ -75,7 +95,7 @@ def _parts(shown: list[str], rows: list[dict], t) -> list[list[str]]:
 
 def _table(part: list[str], first: bool, rows: list[dict], notes: list[str], t) -> dict:
     rows = [row for row in rows if first or row.get("cells")]  # what was left out is said once
-    return {"columns": [column_title(column, t) for column in part],
+    return {"columns": [_title(column, rows, t) for column in part],
             "rows": [{"method": method_name(row, t),
                       "note": _mark(notes.index(row["note"])) if row.get("note") else "",
                       "cells": [_text(row, column, rows, t) for column in part]} for row in rows]}
@@ -89,8 +109,14 @@ def _text(row: dict, column: str, rows: list[dict], t) -> str:
         return count(value)
     if u:
         return t.number(concise(value, u))
-    if column in VALUES[:2] or any(cell(other, column).get("u") for other in rows):
+    if column in VALUES[:2]:
+        return t.number(min(significant(value, 6), _rounded(value, row["decimals"].get(column)), key=len))
+    if _in_mm(column, rows):
+        return t.number(significant(value / 1000, 3))
+    if any(cell(other, column).get("u") for other in rows):
         return t.number(significant(value, 6))
+    if column in ROUGH and abs(value) < NOTHING:
+        value = 0.0
     return t.number(significant(value, 2 if column.isdecimal() or column in ROUGH else 3))
 
 

@@ -1,6 +1,7 @@
 """What the result takes for granted, what was left out of it, and what the residuals were asked."""
 from calibration import Calibration
 from language import Language
+from meaning import meaning
 from notation import count, significant
 from uncertainty import raw_p
 
@@ -20,7 +21,7 @@ def content(c: Calibration, previous: Calibration | None, t: Language) -> dict[s
     rows = [each for each in misfits if not each["raw"] > ASKED or each["ratio"] > FAR]
     rows = sorted(rows, key=lambda each: each["raw"])[:MOST_ROWS]
     targets = c.get("targets") or []
-    return {"influences": sorted(shown, key=lambda each: ROLES.index(each["role"])),
+    return {"meaning": lambda source: meaning(source, t), "influences": sorted(shown, key=lambda each: ROLES.index(each["role"])),
             "held_at_zero": _listed(zero, t), "misfits": rows, "tested": len(misfits),
             "rest": len(misfits) - len(rows), "set_aside": _set_aside(targets, t) if targets else ""}
 

@@ -8,7 +8,7 @@ OTHERS = ["naive", "clustered", "jackknife", "bootstrap"]  # estimates of u
 
 
 def content(c: Calibration, previous: Calibration | None, t: Language) -> dict[str, object]:
-    return {"shown": c.own,
+    return {"shown": c.own, "shown_spread": bool(c.get("jackknife")),
             "others": [name for name in OTHERS if any(each.get(f"u_{name}") is not None for each in c.own)],
             "changes": as_found.changes(previous, c) if previous else None,
             "both": [(which, each.get("name") or each.file.name, as_text((each.get("certificate") or {}).get(

@@ -13,7 +13,7 @@ def content(c: Calibration, previous: Calibration | None, t: Language) -> dict[s
     if found.key == "unreliable" and not reasons:
         reasons = [t("verdict.unexplained")]
     return {"status": found, "reasons": reasons, "warnings": warnings,
-            "notes": [str(each) for each in c.get("notes") or []], "unexcluded": status.unexcluded_in_words(c, t),
+            "notes": [str(each) for each in c.get("notes") or []], "unexcluded": status.unexcluded_in_words(c, t) if c.is_reliable else "",
             "left_out": _left_out(c, t), "fit": _fit(c, t)}
 
 

@@ -178,6 +178,16 @@ class ComparisonTest(unittest.TestCase):
     def columns(self, found):
         return [column.replace("\u00a0", " ") for each in found["tables"] for column in each["columns"]]
 
+    def test_millimetres_where_micrometres_would_be_thousands(self):
+        rows = [turntable_row("two", 25.0, -300.0), turntable_row("one", (70.7, 6.7), (-60.0, 13.0))]
+        for each, S in zip(rows, (4454.0, 11631.0)):
+            each["cells"].append({"column": "S/um", "value": S, "u": None})
+        found = comparison_section.content(calibration(compare=rows, grid=None), None, EN)
+        values, others = found["tables"]
+        self.assertEqual(others["columns"], ["S\u00a0/\u00a0mm"])
+        self.assertEqual([each["cells"] for each in others["rows"]], [["4.45"], ["11.6"]])
+        self.assertEqual(values["rows"][0]["cells"][:2], ["25.0", "\u2212300"])  # no digit that the reference has not
+
     def test_every_column_that_says_something_once(self):
         found = self.tables(METHODS)
         self.assertEqual(self.columns(found), ["M / mm", "N / mm"])  # the step is in the method's name

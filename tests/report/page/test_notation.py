@@ -66,6 +66,19 @@ class ConciseTest(unittest.TestCase):
         self.assertEqual(notation.concise(1.0, None), "1.00000")
 
 
+class SentencesTest(unittest.TestCase):
+    def test_micrometres_and_no_german_word(self):
+        for said, shown in (("plates that are 10 um rms off", "plates that are 10 µm rms off"),
+                            ("um 10 um, verschöbe M um -0.2 mm", "um 10 µm, verschöbe M um −0.2 mm"),
+                            ("bei 5 um 3 mm, bei 5 um ±3 mm", "bei 5 um 3 mm, bei 5 um ±3 mm"), ("0.5 um)", "0.5 µm)")):
+            self.assertEqual(notation.in_sentence(said), shown)
+
+    def test_powers_of_ten_only_where_numbers_have_them(self):
+        for said, shown in (("1.65e+03 degrees", "1650 degrees"), ("±1,8e+02 mm", "±180 mm"), ("2.5e+00", "2.5 × 10⁰"),
+                            ("2e+07", "2 × 10⁷"), ("p < 1e-16", "p < 10⁻¹⁶"), ("3e-09", "3 × 10⁻⁹")):
+            self.assertEqual(notation.in_sentence(said), shown)
+
+
 class OtherRulesTest(unittest.TestCase):
     def test_degrees_of_freedom_are_truncated(self):
         self.assertEqual(notation.dof(31.999), "31")

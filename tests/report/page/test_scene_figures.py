@@ -6,11 +6,16 @@ import numpy as np
 
 from synthetic import calibration, text_of
 from uncertainty_scenes import plate, readings, table
+import arm
 import figures
 import labels
+import oblique
+import pages
+import poses
 import scene
 import style
 import volume
+from calibration import read_calibration
 from language import Language
 
 EN, DE = Language("en"), Language("de")
@@ -108,6 +113,53 @@ class SceneTest(unittest.TestCase):
         c = calibration(scene={"targets": [plate(f"plate {k}", 10 * k, 500 + k) for k in range(400)]})
         self.assertLess(len(style.to_svg(figures.draw("scene", c, EN), "x", "x", EN)), 400_000)
         self.assertIn("400", figures.caption("scene", c, EN)["left_out"])
+
+
+class ObliqueTest(unittest.TestCase):
+    def test_a_planar_arm(self):
+        """Two links of 300 and 200 mm at 90 and -90 degrees: up, then along X."""
+        points, flange = arm.along(np.array([[0, 50, 300, 0, 0], [0, 0, 200, 0, 0.0]]), np.radians([90, -90]))
+        np.testing.assert_allclose(points, [[0, 0, 0], [0, 0, 50], [0, 300, 50], [0, 300, 50], [200, 300, 50]], atol=1e-12)
+        np.testing.assert_allclose(flange[:3, :3], np.eye(3), atol=1e-12)
+
+    def test_the_flange_is_where_the_program_has_it(self):
+        c = read_calibration(pages.calibration("robot"))
+        for station in poses.stations(c):
+            for joints, flange in zip(station.joints, station.flange):
+                np.testing.assert_allclose(arm.along(arm.links(c), joints)[1][:3, 3], flange, atol=1e-6)
+
+    def test_a_picture_keeps_lengths_and_the_sky_above(self):
+        view = oblique.view_from(0.7)
+        axes = np.stack([view.right, view.up, view.towards])
+        np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
+        self.assertAlmostEqual(np.linalg.det(axes), 1)  # no mirror
+        self.assertGreater(view.up[2], 0)
+        self.assertEqual(view.right[2], 0)
+
+    def test_no_plane_is_seen_edge_on(self):
+        points = np.array([[x, 0.0, z] for x in (-1, 0, 1) for z in (-1, 1)])
+        normal = oblique.normal_of(points)
+        np.testing.assert_allclose(np.abs(normal), [0, 1, 0], atol=1e-12)
+        self.assertGreater(abs(normal @ oblique.best_view(points, [normal]).towards), 0.5)
+
+    def test_where_light_meets_a_plate(self):
+        square = np.array([[-1.0, 0, -2], [1, 0, -2], [1, 0, 2], [-1, 0, 2]])
+        line = oblique.cut(square, np.array([0.5, 9, 0]), np.array([1.0, 0, 0]))
+        np.testing.assert_allclose(sorted(line.tolist()), [[0.5, 0, -2], [0.5, 0, 2]])
+        self.assertEqual(len(oblique.cut(square, np.array([5.0, 0, 0]), np.array([1.0, 0, 0]))), 0)
+
+    def test_a_patch_holds_what_was_seen(self):
+        seen = np.array([[0.0, 0, 5], [4, 0, 5], [4, 2, 5], [1, 1, 5]])
+        corners = oblique.patch(seen)
+        np.testing.assert_allclose(corners[:, 2], 5)
+        self.assertGreaterEqual(np.linalg.norm(corners[2] - corners[0]), math.hypot(4, 2) - 1e-9)
+
+    def test_everything_is_drawn_and_named(self):
+        c = calibration(scene={"targets": [plate("left", -100, 500), plate("right", 300, 700)]})
+        self.assertLessEqual({"X", "Y", "Z", "Achse", "Profilsensor", "left", "right"},
+                             set(texts(figures.draw("scene_3d", c, DE))))
+        self.assertIn("100", figures.caption("scene_3d", c, EN)["length"])
+        self.assertIsNone(figures.draw("scene_3d", calibration(), EN))
 
 
 class VolumeTest(unittest.TestCase):

@@ -66,6 +66,9 @@ class VerdictTest(unittest.TestCase):
         of_type_a = calibration()["budget"][:1]
         self.assertIn("not a traceable uncertainty", text_of("verdict", calibration(budget=of_type_a)))
         self.assertIn("not a traceable uncertainty", text_of("verdict", calibration(budget=None)))
+        for scope, told in (("view", True), ("point", True), ("target", False), ("system", False)):  # noise is declared, too
+            influences = [{"source": "scale_y", "role": "consider", "u": 1e-4, "unit": "1", "scope": scope}]
+            self.assertEqual("not a traceable" in text_of("verdict", calibration(influences=influences)), told, scope)
 
     def test_lack_of_fit(self):
         shown = text_of("verdict", calibration())
@@ -163,11 +166,26 @@ class UnreliableTest(unittest.TestCase):
     def test_no_section_has_U_or_its_probability(self):
         c = whole(2)
         c["status"] = "unreliable"
-        for section in ("verdict", "result", "leave_one_out", "monte_carlo", "volume", "comparison"):
+        for section in ("verdict", "result", "leave_one_out", "monte_carlo", "volume", "comparison", "budget"):
             shown = text_of(section, c)
             self.assertNotIn("95 %", shown, section)
             self.assertNotRegex(shown, r"\bU\b", section)
         self.assertEqual(text_of("volume", c) + text_of("monte_carlo", c), "")
+
+    def test_budget_of_shares_alone(self):
+        two = {"parameters": calibration()["parameters"][:2]}
+        shown = text_of("budget", calibration(**two))
+        self.assertIn("u(M) / mm", shown)
+        self.assertIn("Combined", shown)
+        shown = text_of("budget", calibration(status="unreliable", **two))
+        self.assertIn("no uncertainty of a parameter is stated", shown)
+        self.assertIn("Share of M / % Share of N / % noise_y noise of a point along depth A 0.050 mm 18 000 86.0 99.0", shown)
+        for promise in ("u(M)", "Combined", "the standard uncertainty u of each"):
+            self.assertNotIn(promise, shown)
+
+    def test_nor_what_would_be_more_than_U(self):
+        misfit = calibration()["misfits"][0] | {"moves": {"M": 4.4 * 0.0054}}
+        self.assertNotIn("nor exclude", text_of("verdict", calibration(misfits=[misfit], status="unreliable")))
 
     def test_methods_without_u(self):
         rows = [turntable_row("one", (122.36512, 0.045), (409.0, 0.05)), turntable_row("two", (122.4, 0.045), (409.0, 0.05))]
@@ -312,7 +330,7 @@ class ConsideredTest(unittest.TestCase):
     def test_held_and_set_aside_but_not_what_the_budget_has(self):
         shown = text_of("considered", calibration())
         self.assertNotIn("scale_y", shown)  # its line in the budget says all of it
-        self.assertIn("scale_y considered 0.00010 instrument", text_of("considered", calibration(budget=None)))
+        self.assertIn("scale_y relative scale error along depth considered 0.00010 instrument", text_of("considered", calibration(budget=None)))
         self.assertIn("Held at zero: tilt_y.", shown)
         self.assertIn("3 points were set aside: 3 off the line of their profile.", shown)
 
@@ -321,8 +339,8 @@ class ConsideredTest(unittest.TestCase):
         tests = [asked, calibration()["misfits"][0], calibration()["misfits"][0]]
         shown = text_of("considered", calibration(misfits=tests))
         self.assertIn("For each of 3 quantities", shown)
-        self.assertIn("shear held 3.0 × 10⁻⁶ rad 8.00 0.008 0.02 M by 0.50 u", shown)
-        self.assertNotIn("tilt_y held", shown)  # it asks for nothing and moves nothing
+        self.assertIn("shear deviation of the profiler's axes from a right angle held 3.0 × 10⁻⁶ rad 8.00 0.008 0.02 M by 0.50 u", shown)
+        self.assertNotIn("about its Y held", shown)  # it asks for nothing and moves nothing
         self.assertIn("2 more have no row", shown)
 
     def test_p_by_itself_is_that_of_the_tables(self):
@@ -337,13 +355,13 @@ class ConsideredTest(unittest.TestCase):
                       {"source": "tilt_y", "role": "hold", "u": 0.0, "unit": "rad", "scope": "system"},
                       {"source": "form", "role": "consider", "u": 0.002, "unit": "mm", "scope": "target"}]
         shown = text_of("considered", calibration(influences=influences))
-        self.assertIn("form considered 0.0020 mm target noise_z variance from the residuals 0.050 mm point",
+        self.assertIn("form form of the plate considered 0.0020 mm target noise_z noise of a point along the line variance from the residuals 0.050 mm point",
                       shown)
 
     def test_values_that_are_held_elsewhere(self):
         c = calibration()
         c["parameters"][3]["value"] = 0.01
-        self.assertIn("tilt_y = 0.0100000 rad held", text_of("considered", c))
+        self.assertIn("tilt_y tilt of the profiler about its Y = 0.0100000 rad held", text_of("considered", c))
 
     def test_points_set_aside_of_many_targets(self):
         targets = [{"name": f"t{k}", "points": 10, "missing": 0, "set_aside": k, "set_aside_reasons": {}}
