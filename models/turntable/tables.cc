@@ -2,6 +2,7 @@
 #include <glog/logging.h>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include "models/median.h"
 #include "models/scanner.h"
@@ -166,6 +167,30 @@ NumberTable SweepTable(const FittedPlacement& fitted, const std::vector<Mean>& m
   return table;
 }
 
+// In the order of time. Empty of a sweep that never turns back: there it is the order of angles.
+NumberTable TimeTable(const FittedPlacement& fitted, const std::vector<Mean>& means) {
+  const std::vector<Profile>& profiles = fitted.placement.profiles;
+  std::vector<size_t> order(profiles.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::stable_sort(order, {}, [&](size_t k) { return profiles[k].time; });
+  const auto alpha = [&](size_t k) { return profiles[k].alpha; };
+  if (std::ranges::is_sorted(order, {}, alpha) || std::ranges::is_sorted(order, std::greater(), alpha)) return {};
+  NumberTable table = TableOf({{"time", Unit::kOne}, {"alpha", Unit::kRad}, {"residual", Unit::kMm}, {"u", Unit::kMm}});
+  const double sigma = fitted.placement.Pure().sigma();
+  const size_t count = std::min(kMostInSweep, order.size());
+  for (size_t row = 0; row < count; ++row) {
+    Mean time, angle, residual;
+    for (size_t k = row * order.size() / count; k < (row + 1) * order.size() / count; ++k) {
+      const Profile& profile = profiles[order[k]];
+      time.Add(profile.time, 1);
+      angle.Add(profile.alpha, 1);
+      residual.Add(means[order[k]]);
+    }
+    table.rows.push_back({time.Value(), angle.Value(), residual.Value(), sigma / std::sqrt(residual.count)});
+  }
+  return table;
+}
+
 NumberTable CorrelationTable(const std::vector<Profile>& profiles, const std::vector<Mean>& means) {
   std::vector<double> r;
   for (const Group& angle : InGroups(profiles, profiles.size()))
@@ -202,9 +227,11 @@ NumberTables ResidualTables(const FittedPlacement& fitted) {
     Mean& mean = means.emplace_back();
     for (const Piece& piece : of_profile) mean.Add(piece.residual);
   }
-  return {{"cells", CellTable(fitted, pieces)},
-          {"sweep", SweepTable(fitted, means)},
-          {"sweep_correlation", CorrelationTable(profiles, means)}};
+  NumberTables tables = {{"cells", CellTable(fitted, pieces)},
+                         {"sweep", SweepTable(fitted, means)},
+                         {"sweep_correlation", CorrelationTable(profiles, means)}};
+  if (NumberTable in_time = TimeTable(fitted, means); !in_time.rows.empty()) tables["time"] = std::move(in_time);
+  return tables;
 }
 
 ViewResiduals ResidualsOf(const Placement& placement) {

@@ -128,6 +128,21 @@ TEST(TurntableFigures, TheSweepIsTheMeanOfEachProfile) {
   EXPECT_NEAR(correlation.rows[3][1], products / squares, 1e-6);
 }
 
+TEST(TurntableFigures, ASweepThatTurnsBackIsShownInTime) {
+  ScannedPlates scene = Scanned(40);
+  std::vector<Profile>& profiles = scene.placements[1].profiles;
+  for (size_t k = 0; k < 40; ++k) profiles[k].time = static_cast<double>(k % 2 == 0 ? k / 2 : 39 - k / 2);
+  const Calibration c = Calibrated(ScannerOf(scene.placements));
+  EXPECT_FALSE(c.targets[0].residual_tables.contains("time"));  // never turns back
+  const auto& in_time = c.targets[1].residual_tables.at("time").rows;
+  const auto& sweep = c.targets[1].residual_tables.at("sweep").rows;
+  ASSERT_EQ(in_time.size(), 40U);
+  for (size_t row = 0; row < 40; ++row) {
+    const std::vector<double>& at = sweep[row < 20 ? 2 * row : 2 * (39 - row) + 1];
+    EXPECT_EQ(in_time[row], (std::vector{static_cast<double>(row), at[0], at[1], at[2]}));
+  }
+}
+
 TEST(TurntableFigures, LongSweepsAreGrouped) {
   const Calibration c = Calibrated(ScannerOf(Scanned(700).placements));
   const auto& sweep = c.targets[0].residual_tables.at("sweep").rows;

@@ -29,6 +29,8 @@ def target(name: str, **changes) -> dict:
                             [0.0, 0.2, 0, 50, 0.03, 50]]),
             "sweep": table("alpha residual u", [[0.05, 0.01, 0.004], [0.10, -0.01, 0.004],
                                                  [0.15, 0.002, 0.004]]),
+            "time": table("time alpha residual u", [[0, 0.05, 0.01, 0.004], [1, 0.15, 0.002, 0.004],
+                                                    [2, 0.10, -0.01, 0.004]]),
             "sweep_correlation": table("lag correlation", [[0, 1.0], [1, -0.2], [2, 0.1]])} | changes
 
 

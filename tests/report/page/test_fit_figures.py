@@ -10,8 +10,8 @@ import style
 from language import Language
 
 EN, DE = Language("en"), Language("de")
-FIGURES = ["comparison", "residual_map", "residual_sweep", "residual_line", "residual_histogram",
-           "surface_contour"]
+FIGURES = ["comparison", "residual_map", "residual_sweep", "residual_time", "residual_line",
+           "residual_histogram", "surface_contour"]
 
 
 class DrawingTest(unittest.TestCase):
@@ -41,16 +41,16 @@ class DrawingTest(unittest.TestCase):
     def test_a_table_without_rows_is_none(self):
         c = self.whole()
         for each in c["residuals"]["targets"]:
-            for key in ("cells", "sweep", "sweep_correlation"):
+            for key in ("cells", "sweep", "time", "sweep_correlation"):
                 each[key]["rows"] = []
             each |= {"histogram": {"counts": [], "from": 0, "to": 0}, "lags": [], "correlation": []}
-        for name in FIGURES[1:5]:
+        for name in FIGURES[1:6]:
             self.assertIsNone(figures.draw(name, c, EN), name)
 
     def test_balls_are_drawn_elsewhere(self):
         c = self.whole()
         c["residuals"]["targets"][0]["balls"] = table("pose x y z", [[0, 0.1, 0.2, 0.3]])
-        for name in FIGURES[1:5]:
+        for name in FIGURES[1:6]:
             self.assertIsNone(figures.draw(name, c, EN), name)
 
     def test_many_targets_are_thinned_out_and_it_is_said(self):
@@ -70,7 +70,7 @@ class DrawingTest(unittest.TestCase):
 
     def test_nulls_within(self):
         c = self.whole()
-        for key, column in (("cells", 4), ("sweep", 1), ("sweep", 2), ("sweep_correlation", 1)):
+        for key, column in (("cells", 4), ("sweep", 1), ("sweep", 2), ("time", 1), ("time", 2), ("sweep_correlation", 1)):
             c["residuals"]["targets"][0][key]["rows"][0][column] = None
         c["residuals"]["targets"][0] |= {"correlation": [1.0, None, 0.2, 0.0], "correlation_length": None}
         c["surface"]["search"]["rows"][5][2] = None
