@@ -45,6 +45,8 @@ std::vector<std::string> LeftOut(const Calibration& calibration, const Arm& decl
   for (const Quantity& quantity : quantities)
     if (const Parameter* parameter = calibration.Find(quantity.name); parameter && parameter->value != 0)
       terms.push_back(quantity.name);
+  if (const Parameter* expansion = calibration.Find("expansion"); expansion && expansion->value != 0)
+    terms.push_back(expansion->name);
   if (!terms.empty()) notes.push_back("joints of a URDF turn by what they read; left out: " + Listed(terms));
   for (const Coupling& each : declared.couplings)
     notes.push_back(fmt::format("joint {0} turns by q{0} {1} q{2} of the controller", each.joint + 1,

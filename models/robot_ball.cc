@@ -24,7 +24,7 @@ Model::Model(std::vector<Link> links, std::vector<Sphere> spheres, bool measured
   declare("repeatability", 6, kView, Role::kEstimate, "repeatability");  // of these two `estimate` means their
   declare("ball", 3, kPoint, Role::kEstimate, "ball");                   // variance
   declare("drift", 3, kSystem, Role::kHold, "drift");
-  for (const char* name : {"artifact_scale", "scanner_scale"})
+  for (const char* name : {"artifact_scale", "scanner_scale", "expansion"})
     quantities_.push_back({name, Unit::kOne, kSystem, Role::kHold, 0, 0, false, ""});
   DeclareLinks(links_.size(), &quantities_);
   SetDefaultLinkRoles(links_, kLinks, &quantities_);
@@ -72,7 +72,7 @@ Eigen::MatrixXd Model::Features(const std::vector<SeenBall>& balls) const {
 void SetTerms(Measurements* data) {
   const auto set = [&](std::vector<Model::View*> views) {
     std::stable_sort(views.begin(), views.end(), [](const auto* a, const auto* b) { return a->number < b->number; });
-    SetTermsInOrder(data->links, data->gravity, views);
+    SetTermsInOrder(data->links, data->gravity, data->gear_ratios, views);
     const double last = std::max(1.0, static_cast<double>(views.size()) - 1);
     for (size_t v = 0; v < views.size(); ++v) views[v]->time = static_cast<double>(v) / last - 0.5;
   };

@@ -34,7 +34,8 @@ namespace scancal::robot_ball {
 // origin, and so moves all balls of the pose alike; ball moves one of them by SeenBall::spread times itself;
 // sphere_NAME_x, _y, _z is the error of a centre on the artifact; artifact_scale and scanner_scale are relative errors
 // of all lengths of the one and the other; drift_x, _y, _z is how far what the scanner shows moves from the first pose
-// to the last, in its own frame; and what the joints do (DeclareJointTerms). Lengths mm, angles rad.
+// to the last, in its own frame; expansion is by how much of themselves all d and a grow for each kelvin above the mean
+// temperature of the poses; and what the joints do (DeclareJointTerms). Lengths mm, angles rad.
 class Model {
  public:
   // Each the first of three or six, x y z rx ry rz, or of one; links: the first of kLinkNumbers a link, behind them
@@ -47,7 +48,8 @@ class Model {
     kDrift = 21,
     kArtifactScale = 24,
     kScannerScale = 25,
-    kLinks = 26
+    kExpansion = 26,
+    kLinks = 27
   };
   static constexpr int kRowsPerPoint = 3;
 
@@ -67,6 +69,7 @@ class Model {
     std::vector<SeenBall> balls = {};
     int number = 0;                  // in the order in which the poses were taken, from 0
     double time = 0;                 // of all poses, from -1/2 to 1/2
+    double warmer = 0;               // K above the mean temperature of all poses; 0 where none was logged
     std::vector<double> terms = {};  // JointTermsAt; empty: what the joints do is left out
   };
   struct Target {  // a station of the artifact
@@ -120,6 +123,8 @@ struct Measurements {
   bool measured_in_world = false;             // the spheres are on the tool, the stations are the world's (one)
   std::optional<Eigen::Isometry3d> hand_eye;  // where all of it is held
   Eigen::Vector3d gravity = -Eigen::Vector3d::UnitZ();  // its direction in the base
+  std::vector<double> gear_ratios;                      // Arm
+  std::optional<double> temperature;                    // mean of the poses, degC, if it was logged
   std::vector<Model::Sphere> spheres;
   double u_spheres = 0;           // standard uncertainty of each coordinate of their centres, mm
   double ball_diameter = 0;       // mm; 0: not declared
@@ -145,6 +150,7 @@ struct Kinematics {
   Eigen::Isometry3d flange_from_scanner = Eigen::Isometry3d::Identity();
   std::vector<Link> link_errors;         // added to the nominal; one a link
   std::vector<double> joint_terms = {};  // of DeclareJointTerms; none: zero
+  double expansion = 0;                  // 1/K
 };
 
 // flange_from_scanner of hand_eye_x .. _rz, and back; the rotation vector is at most pi long.
@@ -156,6 +162,12 @@ void Model::Residual(const Target& station, const View& pose, const Seen<T>& q, 
   ChainFrame<T> flange = MakeChainFrame<T>(pose.base_from_flange);
   std::vector<T> errors(q.q + kLinks, q.q + FirstOfJointTerms());
   AddJointTerms(pose.terms, q.q + FirstOfJointTerms(), joints_of_terms_, errors.data());
+  if (pose.warmer != 0 && !IsZero(q[kExpansion]))
+    for (size_t k = 0; k < links_.size(); ++k) {
+      T *d = &errors[kLinkNumbers * k + 1], *a = d + 1;
+      *d += (*d + links_[k].d) * q[kExpansion] * pose.warmer;
+      *a += (*a + links_[k].a) * q[kExpansion] * pose.warmer;
+    }
   MoveAlong(links_, pose.joints.data(), errors.data(), &flange);
   T hand[9], turn[9];  // columns of the rotations
   ceres::AngleAxisToRotationMatrix(q.q + kHandEye + 3, ceres::ColumnMajorAdapter3x3(hand));

@@ -60,6 +60,8 @@ void DeclareJointTerms(size_t links, Quantities* quantities) {
   for (size_t i = 1; i <= links; ++i)
     for (const char* harmonic : {"_cos1", "_sin1", "_cos2", "_sin2"})
       declare(std::string("eccentricity") + harmonic, i, "", Unit::kRad);
+  for (size_t i = 1; i <= links; ++i)
+    for (const char* name : {"motor_cos", "motor_sin"}) declare(name, i, "", Unit::kRad);
 }
 
 std::vector<int> JointsOfTerms(int links) {
@@ -68,13 +70,14 @@ std::vector<int> JointsOfTerms(int links) {
     for (int k = i; k < links; ++k) joints.push_back(i);
   for (int kind = 0; kind < 2; ++kind)
     for (int i = 0; i < links; ++i) joints.push_back(i);
-  for (int i = 0; i < links; ++i)
-    for (int harmonic = 0; harmonic < 4; ++harmonic) joints.push_back(i);
+  for (const int harmonics : {4, 2})  // of the joint, of its motor
+    for (int i = 0; i < links; ++i) joints.insert(joints.end(), static_cast<size_t>(harmonics), i);
   return joints;
 }
 
 std::vector<double> JointTermsAt(const std::vector<Link>& links, const std::vector<double>& joints,
-                                 const std::vector<int>& direction, const Eigen::Vector3d& gravity) {
+                                 const std::vector<int>& direction, const Eigen::Vector3d& gravity,
+                                 const std::vector<double>& gear_ratios) {
   CHECK_EQ(links.size(), joints.size());
   constexpr double kRounding = 1e-9;
   const auto n = std::ssize(links);
@@ -99,6 +102,11 @@ std::vector<double> JointTermsAt(const std::vector<Link>& links, const std::vect
   for (const double q : joints) at.push_back(q);
   for (const double q : joints)
     for (const double harmonic : {std::cos(q), std::sin(q), std::cos(2 * q), std::sin(2 * q)}) at.push_back(harmonic);
+  for (size_t k = 0; k < joints.size(); ++k) {
+    const double ratio = k < gear_ratios.size() ? gear_ratios[k] : 0;
+    at.push_back(ratio != 0 ? std::cos(ratio * joints[k]) : 0);
+    at.push_back(ratio != 0 ? std::sin(ratio * joints[k]) : 0);
+  }
   return at;
 }
 

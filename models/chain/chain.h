@@ -99,19 +99,22 @@ void MoveAlong(const std::vector<Link>& links, const double* joints, const T* er
 //     joint_scale_i        counts of a turn: times q_i; 1
 //     eccentricity_cos1_i  .. _sin1_i, _cos2_i, _sin2_i: of gear and encoder, once and twice a turn: times cos q_i,
 //                          sin q_i, cos 2 q_i, sin 2 q_i; rad
+//     motor_cos_i          _sin_i: of the motor, once in each of its turns: times cos(ratio q_i), sin(ratio q_i); rad
 //
 // (Whitney, Lozinski and Rourke, J. Dyn. Syst. Meas. Control 108, 1986, 1; Judd and Knasinski, IEEE Trans. Robot.
 // Autom. 6, 1990, 20.) All are linear: JointTermsAt says what each is multiplied by in a pose. The moments are those of
 // the nominal links: what their errors change is of second order.
-constexpr int CountOfJointTerms(int links) { return links * (links + 1) / 2 + 6 * links; }
+constexpr int CountOfJointTerms(int links) { return links * (links + 1) / 2 + 8 * links; }
 
 // Appends them, all held at zero, a kind after the other, a source of the budget per kind and joint ("gravity_2").
 void DeclareJointTerms(size_t links, Quantities* quantities);
 
 // d q_i / d term, in that order. direction: of each joint's last move, +1, -1, or 0 where nobody knows. gravity: its
-// direction in the base, a unit vector.
+// direction in the base, a unit vector. gear_ratios: turns of each motor for one of its joint; 0, or none at all: not
+// known.
 std::vector<double> JointTermsAt(const std::vector<Link>& links, const std::vector<double>& joints,
-                                 const std::vector<int>& direction, const Eigen::Vector3d& gravity);
+                                 const std::vector<int>& direction, const Eigen::Vector3d& gravity,
+                                 const std::vector<double>& gear_ratios = {});
 
 // Sign of each joint's last move, of poses in the order in which they were taken; a joint that stood still keeps the
 // sign of its move before.
@@ -119,12 +122,13 @@ std::vector<std::vector<int>> DirectionsOf(const std::vector<const std::vector<d
 
 // Sets the terms of poses (views with joints and terms) that were taken in this order.
 template <class View>
-void SetTermsInOrder(const std::vector<Link>& links, const Eigen::Vector3d& gravity, const std::vector<View*>& poses) {
+void SetTermsInOrder(const std::vector<Link>& links, const Eigen::Vector3d& gravity,
+                     const std::vector<double>& gear_ratios, const std::vector<View*>& poses) {
   std::vector<const std::vector<double>*> joints;
   for (const View* pose : poses) joints.push_back(&pose->joints);
   const std::vector<std::vector<int>> directions = DirectionsOf(joints);
   for (size_t p = 0; p < poses.size(); ++p)
-    poses[p]->terms = JointTermsAt(links, poses[p]->joints, directions[p], gravity);
+    poses[p]->terms = JointTermsAt(links, poses[p]->joints, directions[p], gravity, gear_ratios);
 }
 
 // The joint that each term turns.

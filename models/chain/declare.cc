@@ -6,6 +6,7 @@
 #include "io/input_file.h"
 #include "io/json_file.h"
 #include "io/message.h"
+#include "io/number.h"
 #include "models/chain/urdf.h"
 #include "models/scanner.h"
 
@@ -63,6 +64,23 @@ Eigen::Vector3d ReadGravity(YamlMap robot) {
   return gravity.normalized();
 }
 
+// Turns of each motor for one of its joint.
+std::vector<double> ReadGearRatios(YamlMap robot, size_t joints) {
+  std::vector<double> ratios;
+  if (!robot.Has("gear_ratio")) return ratios;
+  for (const std::string& text : robot.Texts("gear_ratio")) {
+    const ParsedNumber number = ParseNumber(text);
+    ratios.push_back(number.value);
+    if (number.kind != NumberKind::kNumber || (number.value != 0 && std::abs(number.value) <= 1))
+      robot.Fail("gear_ratio", Quoted(text) +
+                                   ": expected how often a motor turns for one turn of its joint, more "
+                                   "than once, or 0 where nobody knows");
+  }
+  if (ratios.size() != joints)
+    robot.Fail("gear_ratio", fmt::format("expected {} numbers, one a joint; 0 where nobody knows", joints));
+  return ratios;
+}
+
 Result<void> TakeUrdf(const Dataset& dataset, YamlMap robot, Arm* arm) {
   constexpr int64_t kLargest = int64_t{32} << 20;  // bytes
   const std::string name = robot.Text("urdf"), base = robot.Text("base", ""), tip = robot.Text("tip", "");
@@ -99,6 +117,7 @@ Result<Arm> ReadArm(const Dataset& dataset) {
   }
   CheckReach(arm.links, &robot);
   arm.couplings = ReadCouplings(top, arm.links.size());
+  arm.gear_ratios = ReadGearRatios(robot, arm.links.size());
   return arm;
 }
 
@@ -139,6 +158,19 @@ Result<bool> SetJointTerms(const InfluenceSetting& setting, const Dataset& datas
   return sources.contains(setting.name);
 }
 
+Result<void> CheckMotors(const InfluenceSetting& setting, const Arm& arm, const Dataset& dataset) {
+  constexpr std::string_view kMotor = "motor";
+  const std::string& name = setting.name;
+  if (!name.starts_with(kMotor) || setting.role == "hold") return {};
+  for (size_t k = 0; k < arm.links.size(); ++k) {
+    const bool meant = name == kMotor || name == fmt::format("{}_{}", kMotor, k + 1);
+    if (meant && k < arm.gear_ratios.size() && arm.gear_ratios[k] != 0) return {};
+  }
+  return InFile(dataset, "influences: " + name +
+                             ": nobody said how often the motor turns for one turn of its joint; declare robot: "
+                             "{gear_ratio: [121, 121, 101, ...]}, 0 where it is not known");
+}
+
 LinkSetting ReadLinkSetting(const Dataset& dataset) {
   LinkSetting setting;
   YamlMap top = dataset.yaml;
@@ -154,6 +186,10 @@ LinkSetting ReadLinkSetting(const Dataset& dataset) {
     setting.u_angle = links.Number("u_angle", 0) * dataset.units.angle_in_rad;
     for (const auto& [key, u] : {std::pair{"u_length", setting.u_length}, {"u_angle", setting.u_angle}})
       if (u < 0) links.Fail(key, "expected a standard uncertainty, not negative");
+      else if (u == 0 && links.Has(key))
+        links.Fail(key, fmt::format("expected a standard uncertainty above 0; leave {} out where there is no prior, or "
+                                    "say links: hold where all of them are exactly known",
+                                    key));
   }
   return setting;
 }

@@ -31,6 +31,7 @@ struct Arm {
   std::vector<Link> links;                              // nominal, base to flange; none without `robot:`
   Eigen::Vector3d gravity = -Eigen::Vector3d::UnitZ();  // its direction where the first link stands, a unit vector
   std::vector<Coupling> couplings;
+  std::vector<double> gear_ratios;                                    // one a joint, 0: not known; none: of none
   std::vector<std::string> joints;                                    // their names in a URDF
   Eigen::Isometry3d base_from_first = Eigen::Isometry3d::Identity();  // of a URDF: where the first link stands
   std::filesystem::path urdf_file;
@@ -39,12 +40,16 @@ struct Arm {
 // robot: {links: [{theta: 0, d: 333, a: 0, alpha: -90, beta: 0}, ...]}, in the data set's units, theta and beta 0 where
 // they are not given; or robot: {urdf: arm.urdf, base: base_link, tip: tool0} (LinksOfUrdf; base: the root by default),
 // which Dataset::urdf stands for. gravity: [0, 0, -1] is its direction in the base, of any length; down along z where
-// it is not given. coupled: see Coupling. Complains of units that no arm can have.
+// it is not given. coupled: see Coupling. gear_ratio: [121, 121, 101, ...], turns of each motor for one of its joint, 0
+// where nobody knows. Complains of units that no arm can have.
 Result<Arm> ReadArm(const Dataset& dataset);
 
 // calibration.json keeps the URDF, so that nothing else is needed to compute it again.
 void KeepUrdf(const Arm& arm, Json* data);
 Dataset WithUrdf(const Dataset& dataset, const Json& data);
+
+// An Error for what is declared of the motors' turns without a gear ratio.
+Result<void> CheckMotors(const InfluenceSetting& setting, const Arm& arm, const Dataset& dataset);
 
 // parameters: {links: {estimate: 0, u_length: 0.5, u_angle: 0.1}}, in mm and rad.
 struct LinkSetting {

@@ -18,13 +18,13 @@ Result<void> CheckSpacing(const Dataset& dataset, const Model& model) {
   return {};
 }
 
-Result<void> SetInfluence(const InfluenceSetting& setting, const Dataset& dataset, size_t first_of_terms,
-                          std::span<Quantity> quantities) {
+Result<void> SetInfluence(const InfluenceSetting& setting, const Dataset& dataset, const Arm& arm,
+                          size_t first_of_terms, std::span<Quantity> quantities) {
   if (setting.name != "seat" && setting.name != "joints") {
     std::vector<std::string> known = {"joints", "seat"};
     SCANCAL_ASSIGN_OR_RETURN(const bool of_joints,
                              SetJointTerms(setting, dataset, quantities.subspan(first_of_terms), &known));
-    if (of_joints) return {};
+    if (of_joints) return CheckMotors(setting, arm, dataset);
     return InFile(dataset, "influences: " + setting.name + ": unknown influence" + Suggestion(setting.name, known));
   }
   return SetNoise(setting, dataset, setting.name == "seat" ? "pose" : "", quantities);
@@ -79,7 +79,6 @@ Result<Declaration> Declare(const Dataset& dataset) {
   YamlMap top = dataset.yaml;
   top.Map("robot");  // required
   SCANCAL_ASSIGN_OR_RETURN(result.arm, ReadArm(dataset));
-  result.gravity = result.arm.gravity;
   result.model = Model(result.arm.links);
   Model& model = result.model;
   const size_t joints = model.links().size();
@@ -97,7 +96,8 @@ Result<Declaration> Declare(const Dataset& dataset) {
       SetParameters(dataset, links, model.links().size(), Model::kLinks, Model::kSocket, quantities));
   SCANCAL_RETURN_IF_ERROR(CheckSpacing(dataset, model));
   for (const InfluenceSetting& setting : dataset.influences)
-    SCANCAL_RETURN_IF_ERROR(SetInfluence(setting, dataset, static_cast<size_t>(model.FirstOfJointTerms()), quantities));
+    SCANCAL_RETURN_IF_ERROR(
+        SetInfluence(setting, dataset, result.arm, static_cast<size_t>(model.FirstOfJointTerms()), quantities));
   return result;
 }
 
@@ -110,7 +110,7 @@ Result<Model::Target> ReadTool(const ToolDeclaration& tool, const Declaration& d
     for (size_t row = 0; row < table.rows(); ++row)
       target.views.push_back({JointsOf(table, row, joints, declaration.arm.couplings), socket});
   }
-  SetTerms(declaration.model.links(), declaration.gravity, &target);
+  SetTerms(declaration.arm, &target);
   return target;
 }
 

@@ -49,12 +49,12 @@ Seating SeatingOf(const Robot& robot, const Model::Target& tool) {
   return {sum / static_cast<double>(tool.views.size()), (sockets[1] - sockets[0]).norm()};
 }
 
-void SetTerms(const std::vector<Link>& links, const Eigen::Vector3d& gravity, Model::Target* tool) {
+void SetTerms(const Arm& arm, Model::Target* tool) {
   for (const int socket : {0, 1}) {
     std::vector<Model::View*> views;
     for (Model::View& view : tool->views)
       if (view.socket == socket) views.push_back(&view);
-    SetTermsInOrder(links, gravity, views);
+    SetTermsInOrder(arm.links, arm.gravity, arm.gear_ratios, views);
   }
 }
 

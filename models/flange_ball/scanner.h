@@ -31,7 +31,7 @@ struct Robot {
 Robot FitBall(const std::vector<Link>& links, const std::vector<Model::Target>& tools);
 
 // Sets the terms of all poses of a tool; those of a socket were taken one after the other, in the order of its file.
-void SetTerms(const std::vector<Link>& links, const Eigen::Vector3d& gravity, Model::Target* tool);
+void SetTerms(const Arm& arm, Model::Target* tool);
 
 // What a robot says of a tool, whether it was calibrated with it or not. Nothing is fitted.
 struct Seating {
@@ -54,7 +54,6 @@ struct ToolDeclaration {  // one location of the tool
 
 struct Declaration {
   Dataset dataset;
-  Eigen::Vector3d gravity = -Eigen::Vector3d::UnitZ();
   Model model{{}};  // roles, values and u as declared
   Arm arm;
   std::vector<ToolDeclaration> targets, check;  // check: not used in the calibration

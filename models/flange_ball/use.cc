@@ -75,7 +75,7 @@ Result<std::unique_ptr<scancal::Scanner>> Reload(const Dataset& dataset, const J
   SCANCAL_ASSIGN_OR_RETURN(auto targets, ToolsFromJson(data, "targets", declaration.targets, joints, file));
   SCANCAL_ASSIGN_OR_RETURN(auto check, ToolsFromJson(data, "check", declaration.check, joints, file));
   for (auto* tools : {&targets, &check})
-    for (Model::Target& tool : *tools) SetTerms(declaration.model.links(), declaration.gravity, &tool);
+    for (Model::Target& tool : *tools) SetTerms(declaration.arm, &tool);
   declaration.targets.clear();  // nothing is left to be read
   declaration.check.clear();
   return std::unique_ptr<scancal::Scanner>(

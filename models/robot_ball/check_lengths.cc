@@ -99,6 +99,7 @@ Result<CheckLengths> ReadCheck(const CheckFiles& files, const std::filesystem::p
   SCANCAL_ASSIGN_OR_RETURN(Poses poses, ReadPoses(files.poses, links, couplings));
   SCANCAL_ASSIGN_OR_RETURN(Observations observations, ReadObservations(files.observations, folder, ball_diameter));
   SCANCAL_RETURN_IF_ERROR(AttachBalls(observations, pairs.balls, pairs.table.name(), 0, &poses));
+  result.has_temperature = poses.table.Has("temperature");
   result.files = std::move(observations.files);
   result.warnings = std::move(observations.warnings);
   size_t from_one_pose = 0;

@@ -136,6 +136,24 @@ std::vector<std::string> BallsOf(const Measurements& data) {
   return balls;
 }
 
+// Of poses as logged to above the mean of those that the calibration has; without one there is none.
+void TakeTemperature(const Poses& poses, const std::optional<double>& mean, std::vector<Station>* stations) {
+  for (Station& station : *stations)
+    for (Model::View& view : station.views)
+      view.warmer = mean && poses.table.Has("temperature") ? view.warmer - *mean : 0;
+}
+
+std::optional<double> MeanTemperature(const Poses& poses, const std::vector<Station>& stations) {
+  if (!poses.table.Has("temperature")) return std::nullopt;
+  double sum = 0, count = 0;
+  for (const Station& station : stations)
+    for (const Model::View& view : station.views) {
+      sum += view.warmer;
+      ++count;
+    }
+  return sum / count;
+}
+
 // Every so many poses of the table, by their lines.
 void HoldOut(int every, Measurements* data) {
   if (every == 0) return;
@@ -180,6 +198,8 @@ Result<void> TakeStations(const Files& files, const std::filesystem::path& folde
   result->centres_have_u =
       !observations.balls.empty() || (!observations.fitted && observations.table.Has("u") && data.usual_ball_noise > 0);
   data.stations = TakeSeenStations(&poses, &result->warnings);
+  data.temperature = MeanTemperature(poses, data.stations);
+  TakeTemperature(poses, data.temperature, &data.stations);
   DropCopies(poses.table.name(), &data, &result->warnings);
   HoldOut(files.every, &data);
   SCANCAL_RETURN_IF_ERROR(CheckPoses(data, poses.table.name(), &result->warnings));
@@ -198,6 +218,7 @@ Result<void> TakeHeldOut(const CheckFiles& files, const std::filesystem::path& f
   SCANCAL_RETURN_IF_ERROR(
       AttachBalls(observations, BallsOf(data), "the calibration", DeclaredInfluence(result->dataset, "ball"), &poses));
   data.held_out = TakeSeenStations(&poses, &result->warnings);
+  TakeTemperature(poses, data.temperature, &data.held_out);
   result->files.insert(result->files.end(), {files.poses.format.path, files.observations.format.path});
   return {};
 }
@@ -224,6 +245,7 @@ Result<Files> TakeYaml(const Dataset& dataset, Declaration* result) {
   SCANCAL_ASSIGN_OR_RETURN(result->arm, ReadArm(dataset));
   result->data.links = result->arm.links;
   result->data.gravity = result->arm.gravity;
+  result->data.gear_ratios = result->arm.gear_ratios;
   const Files files = ReadFiles(dataset, result->data.links.size(), result->data.measured_in_world);
   result->held_out_stand = files.every > 0;
   result->data.hand_eye = HeldHandEye(dataset);
@@ -234,7 +256,8 @@ Result<Files> TakeYaml(const Dataset& dataset, Declaration* result) {
 }
 
 const std::vector<std::string> kInfluences = {
-    "artifact", "ball", "repeatability", "repeatability_rotation", "artifact_scale", "scanner_scale", "drift"};
+    "artifact",       "ball",          "repeatability", "repeatability_rotation",
+    "artifact_scale", "scanner_scale", "drift",         "expansion"};
 
 class Setter {
  public:
@@ -249,6 +272,10 @@ class Setter {
     SetSpheres(Role::kConsider);
     for (const InfluenceSetting& setting : dataset_.influences)
       SCANCAL_RETURN_IF_ERROR(SetInfluence(setting, quantities));
+    if (model_.quantity(Model::kExpansion).role != Role::kHold && !declaration_.data.temperature)
+      return InFile(dataset_,
+                    "expansion: nobody logged how warm it was; add a column temperature (degC) to the table of the "
+                    "poses, or leave expansion out");
     return {};
   }
 
@@ -261,10 +288,11 @@ class Setter {
     SCANCAL_ASSIGN_OR_RETURN(
         const bool of_joints,
         SetJointTerms(setting, dataset_, quantities.subspan(static_cast<size_t>(model_.FirstOfJointTerms())), &known));
-    if (of_joints) return {};
+    if (of_joints) return CheckMotors(setting, declaration_.arm, dataset_);
     if (std::find(known.begin(), known.end(), setting.name) == known.end())
       return InFile(dataset_, place + "unknown influence" + Suggestion(setting.name, known));
-    if (setting.name == "artifact_scale" || setting.name == "scanner_scale" || setting.name == "drift")
+    if (setting.name == "artifact_scale" || setting.name == "scanner_scale" || setting.name == "drift" ||
+        setting.name == "expansion")
       return SetSystematic(setting, dataset_, quantities);
     return SetNoise(setting, dataset_, setting.name == "ball" ? "ball" : "", quantities);
   }
@@ -332,6 +360,9 @@ Result<Declaration> Declare(const Dataset& dataset) {
     SCANCAL_ASSIGN_OR_RETURN(CheckLengths check,
                              ReadCheck(*files.check, folder, data.links, result.arm.couplings, data.ball_diameter));
     data.check = std::move(check.lengths);
+    for (CheckLength& length : data.check)
+      for (Model::View* view : {&length.first_pose, &length.second_pose})
+        view->warmer = check.has_temperature && data.temperature ? view->warmer - *data.temperature : 0;
     for (const TableDeclaration* table : {&files.check->poses, &files.check->observations, &files.check->distances})
       AddFile(*table, &result.files);
     result.files.insert(result.files.end(), check.files.begin(), check.files.end());

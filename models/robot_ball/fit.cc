@@ -10,6 +10,25 @@ namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
+// A turn about the line through two reflectors moves neither: of the rotation vector, what the other numbers leave
+// without effect is held at its start. x comes last: the line is the x axis of a tool whose shape was found.
+std::vector<std::string> HoldTurnAboutLine(const std::vector<double>& start, Problem* problem, Estimate* at) {
+  constexpr double kPart = 1e-7;
+  std::vector<int> turns;
+  for (int k = Model::kHandEye + 5; k > Model::kHandEye + 2; --k) {
+    Quantity& quantity = problem->quantities[k];
+    if (quantity.role != Role::kEstimate || quantity.u > 0) continue;
+    quantity.value = start[static_cast<size_t>(k)];
+    turns.push_back(k);
+  }
+  if (turns.empty()) return {};
+  const std::vector<std::string> held =
+      HoldUndetermined(turns, kPart, Linearize(*problem, *at, Storey::kViews), problem);
+  *at = NominalStart(*problem);
+  SetValues(*problem, start, 0, at);
+  return held;
+}
+
 }  // namespace
 
 bool IsBeyondHalfATurn(const Solution& solution) {
@@ -37,7 +56,8 @@ Kinematics KinematicsOf(const std::vector<double>& values, size_t joints) {
   const auto terms = values.begin() + Model::kLinks + numbers;
   return {PoseOf(Vector6d::Map(&values[Model::kHandEye])),
           LinksOf(Eigen::VectorXd::Map(values.data() + Model::kLinks, numbers)),
-          {terms, terms + CountOfJointTerms(static_cast<int>(joints))}};
+          {terms, terms + CountOfJointTerms(static_cast<int>(joints))},
+          values[Model::kExpansion]};
 }
 
 Result<JointFit> FitJointly(const Measurements& data, const Model& model, const Eigen::Isometry3d& hand_eye,
@@ -51,6 +71,7 @@ Result<JointFit> FitJointly(const Measurements& data, const Model& model, const 
   problem.WeighEqually(data.usual_ball_noise > 0 ? data.usual_ball_noise : 1);
   Estimate from = NominalStart(problem);
   SetValues(problem, start, 0, &from);
+  if (data.measured_in_world && data.spheres.size() == 2) fit.held_turn = HoldTurnAboutLine(start, &problem, &from);
   fit.held = HoldUndeterminedTerms(model.FirstOfJointTerms(), CountOfJointTerms(static_cast<int>(data.links.size())),
                                    &problem, &from);
   Solution plain = Solve(std::move(problem), from, {max_iterations});

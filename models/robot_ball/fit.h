@@ -13,6 +13,7 @@ struct JointFit {
   std::vector<Station> stations;  // as they entered: the poses from which artifact_x .. _rz count
   Solution solution;
   std::vector<std::string> held;  // of what the joints do: was to be estimated, but these poses do not determine it
+  std::vector<std::string> held_turn;  // of the hand-eye: two reflectors do not tell it, and it is held where it starts
   Kinematics Found() const;
   Eigen::Isometry3d BaseFromArtifact(size_t station) const;
 };

@@ -18,6 +18,13 @@ constexpr Message<size_t, std::string_view> kTermsHeld{
     "robot_ball.terms_held",
     "{} terms of the joints that were to be estimated are not told by these poses, and held at zero: {}",
     "{} zu schätzende Größen der Gelenke bestimmen diese Posen nicht; sie sind bei null festgehalten: {}"};
+constexpr Message<std::string_view> kTurnHeld{
+    "robot_ball.turn_held",
+    "two reflectors do not tell how the tool turns about the line through them: {} is held where it starts; a third "
+    "one "
+    "beside the line would tell it",
+    "Zwei Reflektoren sagen nicht, wie sich das Werkzeug um die Gerade durch sie dreht: {} ist am Startwert "
+    "festgehalten; ein dritter neben der Geraden würde es bestimmen"};
 constexpr Message<std::string_view, size_t> kHeldOut{"robot_ball.held_out", "held out: {}, {} poses (mean distance)",
                                                      "zurückgehalten: {}, {} Posen (mittlerer Abstand)"};
 
@@ -160,6 +167,7 @@ Result<Calibration> Scanner::Calibrate(const RefineChoice& choice) const {
   const Refined refined{
       .solution = fit.solution, .residual = kResidual, .seconds = watch.Seconds(), .warnings = std::move(warnings)};
   Calibration result = Conclude(declaration_.dataset, refined, choice.monte_carlo);
+  if (!fit.held_turn.empty()) result.notes.push_back(Say(kTurnHeld, Listed(fit.held_turn)));
   AddGeometry(fit, data.gravity, &result);
   AddTables(data, fit, &result);
   SCANCAL_ASSIGN_OR_RETURN(const Kinematics before,

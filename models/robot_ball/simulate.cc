@@ -184,7 +184,8 @@ Station Simulation::MeasureStation(int number, const PlannedStation& planned,
   station.name = std::to_string(number + 1);
   for (size_t v = 0; v < planned.joints.size(); ++v) {
     const std::vector<double>& joints = planned.joints[v];
-    station.views.push_back(See(joints, JointTermsAt(data_.links, joints, directions[v], data_.gravity),
+    station.views.push_back(See(joints,
+                                JointTermsAt(data_.links, joints, directions[v], data_.gravity, data_.gear_ratios),
                                 planned.base_from_artifact, spheres_, &noise));
     station.views.back().name = station.name + "-" + std::to_string(station.views.size());
   }
@@ -208,7 +209,8 @@ CheckLength Simulation::Check(int number, std::span<const std::vector<int>> dire
       if (joints.empty()) break;
       const std::vector<int> direction =
           directions.empty() ? std::vector<int>(joints.size()) : directions[views.size()];
-      views.push_back(See(joints, JointTermsAt(data_.links, joints, direction, data_.gravity), place, {ball}, &noise));
+      views.push_back(See(joints, JointTermsAt(data_.links, joints, direction, data_.gravity, data_.gear_ratios), place,
+                          {ball}, &noise));
       views.back().number = 2 * number + (half > 0);
       views.back().name = check.name + (half < 0 ? "-a" : "-b");
     }

@@ -140,6 +140,34 @@ Result<Vector3d> Translation(const std::vector<Station>& stations, const MatrixX
   return Vector3d(LeastSquares(rows.middleCols<3>(kT), -known));
 }
 
+// As if that reflector were the tool.
+Measurements OnlyReflector(Measurements data, int reflector) {
+  data.spheres = {{"", Vector3d::Zero()}};
+  for (Station& station : data.stations) {
+    for (Model::View& view : station.views) {
+      std::erase_if(view.balls, [&](const Model::SeenBall& seen) { return seen.sphere != reflector; });
+      for (Model::SeenBall& seen : view.balls) seen.sphere = 0;
+    }
+    std::erase_if(station.views, [](const Model::View& view) { return view.balls.empty(); });
+  }
+  return data;
+}
+
+// Each reflector has its place on the flange; of all turns that bring the line through both there the smallest.
+Result<Isometry3d> OfTwoReflectors(const Measurements& data) {
+  Vector3d on_flange[2];
+  for (int k = 0; k < 2; ++k) {
+    SCANCAL_ASSIGN_OR_RETURN(const Kinematics one, InitialHandEye(OnlyReflector(data, k)));
+    on_flange[k] = one.flange_from_scanner.translation();
+  }
+  const Vector3d on_tool[2] = {data.spheres[0].centre, data.spheres[1].centre};
+  Isometry3d pose = Isometry3d::Identity();
+  pose.linear() =
+      Eigen::Quaterniond::FromTwoVectors(on_tool[1] - on_tool[0], on_flange[1] - on_flange[0]).toRotationMatrix();
+  pose.translation() = (on_flange[0] + on_flange[1] - pose.linear() * (on_tool[0] + on_tool[1])) / 2;
+  return pose;
+}
+
 bool OnALine(const MatrixXd& points) {
   const MatrixXd centred = points.colwise() - points.rowwise().mean();
   const VectorXd sigma = SvdOf(centred).values;
@@ -150,13 +178,21 @@ bool OnALine(const MatrixXd& points) {
 
 Isometry3d BaseFromScanner(const Measurements& data, const Kinematics& setup, const Model::View& view) {
   CHECK(setup.link_errors.empty() || setup.link_errors.size() == data.links.size());
-  const std::vector<Link> links = WithErrors(data.links, setup.link_errors);
+  std::vector<Link> links = WithErrors(data.links, setup.link_errors);
+  for (Link& link : links) {
+    link.d *= 1 + setup.expansion * view.warmer;
+    link.a *= 1 + setup.expansion * view.warmer;
+  }
   return view.base_from_flange * BaseFromFlange(links, TurnedJoints(view.joints, view.terms, setup.joint_terms)) *
          setup.flange_from_scanner;
 }
 
 Result<Kinematics> InitialHandEye(const Measurements& data) {
   if (data.hand_eye) return Kinematics{*data.hand_eye, std::vector<Link>(data.links.size())};
+  if (data.measured_in_world && data.spheres.size() == 2) {
+    SCANCAL_ASSIGN_OR_RETURN(const Isometry3d pose, OfTwoReflectors(data));
+    return Kinematics{pose, std::vector<Link>(data.links.size())};
+  }
   const MatrixXd rows = AllRows(data);
   const bool is_point = data.measured_in_world && data.spheres.size() == 1;  // which has no turn
   SCANCAL_ASSIGN_OR_RETURN(const Matrix3d rotation,

@@ -19,7 +19,8 @@ Eigen::Isometry3d BaseFromScanner(const Measurements& data, const Kinematics& se
 // are projected out; what is left of R is the smallest singular vector, made the nearest rotation. Turns of the flange
 // (A X = X B) and mere translations (eq. (7)) both count. Then t is linear (eq. (6)) with R known.
 //
-// Where the data set holds all of the hand-eye, it is as it says.
+// Where the data set holds all of the hand-eye, it is as it says. Two reflectors of a tool leave its turn about the
+// line through them open: of all the smallest turn.
 //
 // Errors: too few balls for an equation; poses that move too little, or disagree too much, to determine R; poses that
 // do not turn, or turn about one axis, which leaves t open along it. The sentences name the stations.

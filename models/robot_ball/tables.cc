@@ -138,6 +138,7 @@ Result<Artifact> ReadArtifact(const TableDeclaration& declared) {
 std::vector<TableColumn> PoseColumns(size_t joints, bool with_stations) {
   std::vector<TableColumn> columns = {{"pose", Cells::kText, Dimension::kNone, false}};
   if (with_stations) columns.push_back({"station"});
+  columns.push_back({"temperature", Cells::kNumber, Dimension::kNone, false});
   if (joints == 0) {
     Append(Centre(true, "; joint angles need robot: links in dataset.yaml"), &columns);
     return columns;
@@ -173,6 +174,7 @@ Result<Poses> ReadPoses(const TableDeclaration& declared, const std::vector<Link
     view.name = name;
     view.joints = JointsOf(table, row, links.size(), couplings);
     view.number = static_cast<int>(row);
+    if (table.Has("temperature")) view.warmer = table.Number("temperature", row);
     if (links.empty()) view.base_from_flange = flanges[row];
     const std::string of_station = with_stations ? table.Text("station", row) : "world";
     const size_t station = stations.try_emplace(of_station, stations.size()).first->second;

@@ -34,7 +34,7 @@ struct Poses {
 // Columns station (of the only one, "world", where with_stations is not set), pose and q1 .. qn, one a link; without
 // links x, y, z and those of a turn (Orientation): the flange in the base. Poses without names are numbered by their
 // lines, from 1. Joint angles beyond two turns, or all of some degrees only, are of the other unit and refused, as is a
-// pose that is named twice.
+// pose that is named twice. A column temperature (degC) is View::warmer as it was logged.
 std::vector<TableColumn> PoseColumns(size_t joints, bool with_stations);
 Result<Poses> ReadPoses(const TableDeclaration& declared, const std::vector<Link>& links,
                         const std::vector<Coupling>& couplings, bool with_stations = true);
@@ -111,6 +111,7 @@ struct CheckFiles {
 
 struct CheckLengths {
   std::vector<CheckLength> lengths;
+  bool has_temperature = false;              // of its poses, as logged
   std::vector<std::filesystem::path> files;  // of points on balls
   std::vector<Sentence> warnings;
 };

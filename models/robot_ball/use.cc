@@ -30,6 +30,7 @@ Matrix MatrixOf(const Json& json) {
 
 Json PoseJson(const Model::View& pose) {
   Json json = {{"name", pose.name}, {"number", pose.number}, {"joints", pose.joints}, {"balls", Json::array()}};
+  if (pose.warmer != 0) json["warmer"] = pose.warmer;
   if (pose.joints.empty()) json["base_from_flange"] = Numbers(pose.base_from_flange.matrix());
   for (const Model::SeenBall& ball : pose.balls) {
     Json seen = {{"sphere", ball.sphere}, {"centre", Numbers(ball.centre)}};
@@ -46,6 +47,7 @@ Model::View PoseOfJson(const Json& json, size_t joints, size_t spheres, int numb
   pose.joints = json.at("joints").get<std::vector<double>>();
   if (pose.joints.size() != joints) throw std::out_of_range("joints");
   pose.number = json.value("number", number);
+  pose.warmer = json.value("warmer", 0.0);
   if (joints == 0) pose.base_from_flange.matrix() = MatrixOf<Eigen::Matrix4d>(json.at("base_from_flange"));
   for (const Json& each : json.at("balls")) {
     Model::SeenBall& ball = pose.balls.emplace_back();
@@ -86,6 +88,7 @@ Declaration Parsed(const Json& json) {
   data.links.resize(json.at("joints").get<size_t>());
   data.u_spheres = json.at("u_spheres");
   data.usual_ball_noise = json.at("usual_ball_noise");
+  if (json.contains("temperature")) data.temperature = json["temperature"].get<double>();
   result.u_of_spheres = json.at("u_of_spheres").get<std::vector<double>>();
   if (result.u_of_spheres.size() != data.spheres.size()) throw std::out_of_range("u_of_spheres");
   result.centres_have_u = json.at("centres_have_u");
@@ -113,6 +116,7 @@ Result<Kinematics> KinematicsOf(const Calibration& calibration, size_t links) {
   setup.flange_from_scanner = PoseOf(hand_eye);
   SCANCAL_ASSIGN_OR_RETURN(setup.link_errors, LinkErrorsOf(calibration, links));
   setup.joint_terms = JointTermsOf(calibration, links);
+  if (const Parameter* expansion = calibration.Find("expansion")) setup.expansion = expansion->value;
   return setup;
 }
 
@@ -131,6 +135,7 @@ Json ToJson(const Declaration& declaration) {
                {"stations", Json::array()},
                {"check", Json::array()},
                {"held_out", StationsJson(data.held_out)}};
+  if (data.temperature) json["temperature"] = *data.temperature;
   for (const Sentence& warning : declaration.warnings) json["warnings"].push_back(scancal::ToJson(warning));
   for (const Model::Sphere& sphere : data.spheres)
     json["spheres"].push_back({{"name", sphere.name}, {"centre", Numbers(sphere.centre)}});
@@ -194,6 +199,10 @@ Result<Propagation> Propagate(const Calibration& calibration, const PointRequest
   const Eigen::Vector3d down = gravity == calibration.frames.end() ? Eigen::Vector3d(-Eigen::Vector3d::UnitZ())
                                                                    : Eigen::Vector3d(gravity->second.col(3).head<3>());
   const std::vector<int> unknown(nominal.size());
+  for (const Parameter& parameter : calibration.parameters)
+    if (parameter.name.starts_with("motor_") && parameter.role != Role::kHold)
+      return Error{"propagate: " + parameter.name +
+                   ": the calibration does not keep gear ratios, expected one without the motors' turns"};
   return PropagateTool(
       calibration, points, distances,
       [&](const auto& value, const std::vector<double>& joints, const Eigen::Vector3d& at) {

@@ -21,14 +21,17 @@ std::vector<TableColumn> ScanColumns() {
           {"z", Cells::kNumberOrNothing, Dimension::kLength}};
 }
 
-Result<void> SetInfluences(const Dataset& dataset, Model* model) {
+Result<void> SetInfluences(const Dataset& dataset, const Arm& arm, Model* model) {
   const std::span<Quantity> quantities(&model->quantity(0), model->quantities().size());
   for (const InfluenceSetting& setting : dataset.influences) {
     std::vector<std::string> known = kInfluences;
     SCANCAL_ASSIGN_OR_RETURN(
         const bool of_joints,
         SetJointTerms(setting, dataset, quantities.subspan(static_cast<size_t>(model->FirstOfJointTerms())), &known));
-    if (of_joints) continue;
+    if (of_joints) {
+      SCANCAL_RETURN_IF_ERROR(CheckMotors(setting, arm, dataset));
+      continue;
+    }
     if (std::find(known.begin(), known.end(), setting.name) == known.end())
       return InFile(dataset, "influences: " + setting.name + ": unknown influence" + Suggestion(setting.name, known));
     if (setting.name.starts_with("scale_")) {
@@ -43,7 +46,7 @@ Result<void> SetInfluences(const Dataset& dataset, Model* model) {
 void SetTerms(const Arm& arm, std::vector<Model::View>* poses) {
   std::vector<Model::View*> in_order;
   for (Model::View& pose : *poses) in_order.push_back(&pose);
-  SetTermsInOrder(arm.links, arm.gravity, in_order);
+  SetTermsInOrder(arm.links, arm.gravity, arm.gear_ratios, in_order);
 }
 
 // Points off the line of their profile go.
@@ -121,7 +124,7 @@ Result<Tables> TakeYaml(const Dataset& dataset, Declaration* result) {
   result->model = Model(result->arm.links);
   const std::span<Quantity> quantities(&result->model.quantity(0), result->model.quantities().size());
   SCANCAL_RETURN_IF_ERROR(SetParameters(dataset, links, joints, Model::kLinks, Model::kScaleY, quantities));
-  SCANCAL_RETURN_IF_ERROR(SetInfluences(dataset, &result->model));
+  SCANCAL_RETURN_IF_ERROR(SetInfluences(dataset, result->arm, &result->model));
   return tables;
 }
 

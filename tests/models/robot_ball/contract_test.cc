@@ -66,6 +66,8 @@ struct RobotCase {
     Model model =
         robot_study::DeclaredModel(robot.data, SceneOf(options),
                                    options.influences ? robot_study::Noise::kDeclared : robot_study::Noise::kEstimated);
+    if (robot.data.measured_in_world && robot.data.spheres.size() == 2)  // as the fit holds it
+      model.quantity(Model::kHandEye + 3).role = Role::kHold;
     for (int k = 0; k < 6 && robot.data.hand_eye; ++k) {
       model.quantity(Model::kHandEye + k).role = Role::kHold;
       model.quantity(Model::kHandEye + k).value = NumbersOf(*robot.data.hand_eye)[k];
@@ -140,7 +142,7 @@ struct RobotCase {
 };
 
 // Other arrangements of the same arm, whose points are seen from wherever its poses are.
-enum class Arrangement { kOneBall, kReflectors, kOneReflector, kHeldHandEye };
+enum class Arrangement { kOneBall, kReflectors, kTwoReflectors, kOneReflector, kHeldHandEye };
 
 template <Arrangement kArrangement>
 struct ArrangedCase : RobotCase {
@@ -161,10 +163,12 @@ struct ArrangedCase : RobotCase {
     data.spheres = {{"A", Eigen::Vector3d(0, 0, 0)}};
     if (kArrangement == Arrangement::kReflectors)
       data.spheres.insert(data.spheres.end(), {{"B", Eigen::Vector3d(80, 0, 0)}, {"C", Eigen::Vector3d(0, 60, 20)}});
+    if (kArrangement == Arrangement::kTwoReflectors) data.spheres.push_back({"B", Eigen::Vector3d(80, 0, 0)});
     data.measured_in_world = kArrangement != Arrangement::kOneBall;
-    if (data.measured_in_world) {  // a single reflector says nothing of the tool's turn, which is zero
-      robot.truth.flange_from_scanner = kArrangement == Arrangement::kOneReflector
-                                            ? PoseOf({30, -20, 90, 0, 0, 0})
+    if (data.measured_in_world) {  // a single reflector says nothing of the tool's turn, which is zero, two of a part
+      robot.truth.flange_from_scanner = kArrangement == Arrangement::kOneReflector ? PoseOf({30, -20, 90, 0, 0, 0})
+                                        : kArrangement == Arrangement::kTwoReflectors
+                                            ? PoseOf({30, -20, 90, 0, -0.2, 0.3})
                                             : PoseOf({30, -20, 90, 0.1, -0.2, 0.3});
       robot.base_from_artifact = {PoseOf({2500, 300, 800, 0.1, 0.2, -2})};
       for (size_t s = 1; s < data.stations.size(); ++s)
@@ -203,8 +207,27 @@ struct ArrangedCase : RobotCase {
 INSTANTIATE_TYPED_TEST_SUITE_P(Robot, ModelContract, RobotCase);
 using Arrangements =
     ::testing::Types<ArrangedCase<Arrangement::kOneBall>, ArrangedCase<Arrangement::kReflectors>,
-                     ArrangedCase<Arrangement::kOneReflector>, ArrangedCase<Arrangement::kHeldHandEye>>;
+                     ArrangedCase<Arrangement::kTwoReflectors>, ArrangedCase<Arrangement::kOneReflector>,
+                     ArrangedCase<Arrangement::kHeldHandEye>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(RobotArranged, ModelContract, Arrangements);
+
+// Whatever line the two lie on, and whichever number of the turn is then the open one.
+TEST(RobotBallTest, TheTurnAboutTheLineThroughTwoReflectorsIsHeldByRank) {
+  using Case = ArrangedCase<Arrangement::kTwoReflectors>;
+  const Simulated robot = Case::Robot({});
+  for (const bool along_y : {false, true}) {
+    Measurements data = robot.data;
+    if (along_y) data.spheres[1].centre = {0, 80, 0};
+    const Result<Kinematics> start = InitialHandEye(data);
+    ASSERT_TRUE(start.ok()) << start.error().message;
+    const Result<JointFit> fit = FitJointly(data, Model(data.links, data.spheres, true), start->flange_from_scanner);
+    ASSERT_TRUE(fit.ok()) << fit.error().message;
+    EXPECT_EQ(fit->held_turn, std::vector<std::string>(1, "hand_eye_rx"));
+    const Eigen::Isometry3d found = fit->Found().flange_from_scanner;
+    EXPECT_LT((found * data.spheres[1].centre - robot.truth.flange_from_scanner * robot.data.spheres[1].centre).norm(),
+              0.1);
+  }
+}
 
 TEST(RobotBallTest, DenseAndSparseEliminationAgree) {
   ContractOptions options;

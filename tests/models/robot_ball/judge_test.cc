@@ -229,6 +229,76 @@ TEST(RobotVerdicts, WhatTheJointsDoIsNamedAndCanBeEstimated) {
   }
 }
 
+// As a robot of these numbers would have seen the same balls, with the noise of `data`.
+void SeeAgain(const Simulated& robot, const Kinematics& truth, Measurements* data) {
+  for (size_t s = 0; s < data->stations.size(); ++s)
+    for (Model::View& view : data->stations[s].views) {
+      const Eigen::Isometry3d before = BaseFromScanner(robot.data, robot.truth, view),
+                              now = BaseFromScanner(*data, truth, view);
+      for (Model::SeenBall& ball : view.balls) {
+        const Eigen::Vector3d k =
+            robot.base_from_artifact[s] * PublishedArtifact()[static_cast<size_t>(ball.sphere)].centre;
+        ball.centre += now.inverse() * k - before.inverse() * k;
+      }
+    }
+}
+
+TEST(RobotVerdicts, AMotorThatIsNotRoundIsNamedAndCanBeEstimated) {
+  Scene scene;
+  scene.poses = 12;
+  const Simulated robot = Simulate(scene);
+  Measurements data = robot.data;
+  data.gear_ratios = {121, 160.6, 101, 99.8, 80.7, 51};
+  SetTerms(&data);
+  Quantities terms;
+  DeclareJointTerms(6, &terms);
+  Kinematics truth = robot.truth;
+  truth.joint_terms.assign(terms.size(), 0);
+  const auto index = static_cast<size_t>(Find(terms, "motor_sin_3"));
+  truth.joint_terms[index] = 5e-4;
+  SeeAgain(robot, truth, &data);
+  data.check.clear();  // the robot before had seen them
+  EXPECT_THAT(Doubts(data, {}), Contains(Says(AllOf(HasSubstr("lack of fit"), HasSubstr("motor_3")))));
+  Model model(data.links, data.spheres);
+  for (const int k : {0, -1})
+    model.quantity(model.FirstOfJointTerms() + static_cast<int>(index) + k).role = Role::kEstimate;
+  const Calibration found = Calibrated(data, {}, model);
+  EXPECT_THAT(found.unreliable, IsEmpty());
+  EXPECT_NEAR(found.Find("motor_sin_3")->value, 5e-4, 2 * found.Find("motor_sin_3")->U);
+  EXPECT_LT(found.Find("motor_sin_3")->U, 1e-4);
+}
+
+// Links of aluminium in a hall that warms up by 12 K.
+TEST(RobotVerdicts, LinksThatGrowWithTemperatureAreNamedAndEstimatedOrInTheBudget) {
+  Scene scene;
+  scene.poses = 12;
+  const Simulated robot = Simulate(scene);
+  Measurements data = robot.data;
+  data.temperature = 22;
+  for (Station& station : data.stations)
+    for (Model::View& view : station.views) view.warmer = 6 * std::sin(0.7 * view.number);
+  Kinematics truth = robot.truth;
+  truth.expansion = 2.3e-5;
+  SeeAgain(robot, truth, &data);
+  EXPECT_THAT(Doubts(data, std::vector(10, 1.0)),
+              Contains(Says(AllOf(HasSubstr("lack of fit"), HasSubstr("expansion")))));
+  Model model(data.links, data.spheres);
+  model.quantity(Model::kExpansion).role = Role::kEstimate;
+  const Calibration found = Calibrated(data, std::vector(10, 1.0), model);
+  EXPECT_THAT(found.unreliable, IsEmpty());
+  EXPECT_NEAR(found.Find("expansion")->value, 2.3e-5, 2 * found.Find("expansion")->U);
+  EXPECT_LT(found.Find("expansion")->U, 1e-5);
+  model.quantity(Model::kExpansion).role = Role::kConsider;
+  model.quantity(Model::kExpansion).value = 2.3e-5;
+  model.quantity(Model::kExpansion).u = 1e-5;
+  const Calibration considered = Calibrated(data, std::vector(10, 1.0), model);
+  EXPECT_THAT(considered.unreliable, IsEmpty());
+  double share = 0;
+  for (const BudgetLine& line : considered.budget)
+    if (line.source.english == "expansion") share = *std::max_element(line.share.begin(), line.share.end());
+  EXPECT_GT(share, 0.01);
+}
+
 TEST(RobotVerdicts, AScannerThatSlippedIsNamedWithThePose) {
   Measurements data = FromSeed(1);
   const Eigen::Isometry3d slip(Eigen::Translation3d(0.2, 0, 0.3));
