@@ -20,8 +20,8 @@ struct Command {
 };
 
 extern const Command kRefineCommand, kMonteCarloCommand, kCompareCommand, kSimulateCommand, kTransformCommand,
-    kPropagateCommand, kUrdfCommand, kReportCommand, kRecheckCommand, kDiffCommand, kHistoryCommand, kConvertCommand,
-    kPlanesCommand, kSelftestCommand;
+    kPropagateCommand, kUrdfCommand, kReportCommand, kRecheckCommand, kDiffCommand, kHistoryCommand, kVerifyCommand,
+    kConvertCommand, kPlanesCommand, kSelftestCommand;
 
 // Exit codes.
 inline constexpr int kTrusted = 0, kBadInput = 1, kUnreliable = 2;

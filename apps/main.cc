@@ -19,8 +19,8 @@ namespace {
 
 const Command* const kCommands[] = {&kRefineCommand,    &kMonteCarloCommand, &kCompareCommand, &kSimulateCommand,
                                     &kTransformCommand, &kPropagateCommand,  &kUrdfCommand,    &kReportCommand,
-                                    &kRecheckCommand,   &kDiffCommand,       &kHistoryCommand, &kConvertCommand,
-                                    &kPlanesCommand,    &kSelftestCommand};
+                                    &kRecheckCommand,   &kDiffCommand,       &kHistoryCommand, &kVerifyCommand,
+                                    &kConvertCommand,   &kPlanesCommand,     &kSelftestCommand};
 std::string command_line;
 
 void PrintOverview() {

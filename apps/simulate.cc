@@ -8,6 +8,7 @@
 #include "io/units.h"
 #include "models/robot_ball/simulate.h"
 #include "models/robot_profiler/simulate.h"
+#include "models/turntable/artifact.h"
 
 DECLARE_string(out);
 DEFINE_string(model, "turntable", "what to simulate: turntable, robot-ball or robot-profiler");
@@ -59,6 +60,8 @@ DEFINE_double(missing, 0, "turntable: share of points without a return, 0 to 1")
 DEFINE_double(search_width_M, 20, "turntable: width of the search interval of M, mm; it is not centred on the truth");
 DEFINE_double(search_width_N, 30, "turntable: width of the search interval of N, mm");
 DEFINE_string(format, "", "turntable: csv (angles to 1e-6 deg, lengths to 0.1 um; the default) or npy (every digit)");
+
+DEFINE_bool(artifact, false, "turntable: in artifact/ also a ball bar and a step, for scancal verify");
 
 DEFINE_int32(planes, 8, "robot-profiler: planes");
 DEFINE_int32(stations, 8, "robot-ball: stations of the artifact");
@@ -124,7 +127,9 @@ int RunTurntable() {
   scene.seed = FLAGS_seed;
   scene.search = turntable::SearchAround(scene.system, FLAGS_search_width_M, FLAGS_search_width_N);
   const auto format = FLAGS_format == "npy" ? turntable::ScanFileFormat::kNpy : turntable::ScanFileFormat::kCsv;
-  const Result<void> written = turntable::WriteSimulated(scene, format, FLAGS_out);
+  Result<void> written = turntable::WriteSimulated(scene, format, FLAGS_out);
+  if (written.ok() && FLAGS_artifact)
+    written = turntable::WriteArtifact(scene, std::filesystem::path(FLAGS_out) / "artifact");
   if (!written.ok()) return Complain(written.error().message);
   std::printf(
       "wrote %s: %d placements x %d profiles x %d points, M = %g mm, N = %g mm, seed %llu; truth.json holds the "
@@ -188,7 +193,7 @@ std::vector<Simulator> Simulators() {
       {"placements",     "profiles",  "points",      "sweep",    "line_length", "noise",          "line_correlation",
        "encoder_jitter", "back",      "drift_sweep", "drift",    "angle_step",  "profile_offset", "profile_correlation",
        "form",           "form_kind", "one_plate",   "outliers", "background",  "missing",        "search_width_M",
-       "search_width_N", "format"})
+       "search_width_N", "format",    "artifact"})
     turntable.push_back({name});
   return {{"turntable", turntable, &RunTurntable},
           {"robot-ball",

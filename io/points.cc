@@ -1,5 +1,6 @@
 #include "io/points.h"
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 #include "io/message.h"
 #include "io/npy.h"
@@ -67,19 +68,35 @@ Result<void> AppendFile(const PointRequest& request, const std::vector<ScanColum
 
 using Point = std::array<double, 3>;
 
+// Names of what stands beside the coordinates, with a unit: "u_x", "_mm".
+std::vector<std::pair<std::string, std::string>> NamesOf(const PointExtras& wants) {
+  std::vector<std::pair<std::string, std::string>> names;
+  if (wants.u)
+    for (const char* axis : {"x", "y", "z"}) names.emplace_back(std::string("u_") + axis, "_mm");
+  if (wants.covariance)
+    for (const char* axes : {"xx", "xy", "xz", "yy", "yz", "zz"})
+      names.emplace_back(std::string("cov_") + axes, "_mm2");
+  return names;
+}
+
 // What the formats share: records one after the other behind a header that may need the number of points.
 class Writer : public PointCloudWriter {
  public:
-  explicit Writer(OutputFile file) : file_(std::move(file)) {}
+  Writer(OutputFile file, const PointExtras& wants) : file_(std::move(file)) { wants_ = wants; }
   virtual std::string Header(int64_t points) const = 0;  // always as long
-  virtual void Append(std::string* record, const Point& point, int scan) const = 0;
+  virtual void Append(std::string* record, std::span<const double> numbers, int scan) const = 0;
 
   Result<void> Start() { return file_.Write(Header(0)); }
 
-  Result<void> Write(std::span<const Point> points_mm, int scan) final {
-    for (const Point& point : points_mm) {
+  Result<void> Write(std::span<const Point> points_mm, int scan, std::span<const double> beside) final {
+    const size_t extras = wants_.size();
+    if (beside.size() != extras * points_mm.size()) throw std::logic_error("numbers beside points: not as declared");
+    for (size_t i = 0; i < points_mm.size(); ++i) {
       record_.clear();
-      Append(&record_, point, scan);
+      numbers_.assign(points_mm[i].begin(), points_mm[i].end());
+      numbers_.insert(numbers_.end(), beside.begin() + static_cast<ptrdiff_t>(extras * i),
+                      beside.begin() + static_cast<ptrdiff_t>(extras * (i + 1)));
+      Append(&record_, numbers_, scan);
       SCANCAL_RETURN_IF_ERROR(file_.Write(record_));
     }
     points_ += static_cast<int64_t>(points_mm.size());
@@ -94,6 +111,7 @@ class Writer : public PointCloudWriter {
  private:
   OutputFile file_;
   std::string record_;
+  std::vector<double> numbers_;
   int64_t points_ = 0;
 };
 
@@ -103,11 +121,13 @@ class PlyWriter : public Writer {
   std::string Header(int64_t points) const override {
     const std::string count = std::to_string(points);
     const std::string padding(20 - count.size(), ' ');  // in a comment, where no reader minds
-    return "ply\nformat binary_little_endian 1.0\ncomment x, y, z in mm" + padding + "\nelement vertex " + count +
-           "\nproperty double x\nproperty double y\nproperty double z\nproperty int scan\nend_header\n";
+    std::string header = "ply\nformat binary_little_endian 1.0\ncomment x, y, z in mm" + padding + "\nelement vertex " +
+                         count + "\nproperty double x\nproperty double y\nproperty double z\n";
+    for (const auto& [name, unit] : NamesOf(wants_)) header += "property double " + name + "\n";
+    return header + "property int scan\nend_header\n";
   }
-  void Append(std::string* record, const Point& point, int scan) const override {
-    for (const double coordinate : point) AppendBytes(record, coordinate);
+  void Append(std::string* record, std::span<const double> numbers, int scan) const override {
+    for (const double number : numbers) AppendBytes(record, number);
     AppendBytes(record, scan);
   }
 };
@@ -115,10 +135,14 @@ class PlyWriter : public Writer {
 class CsvWriter : public Writer {
  public:
   using Writer::Writer;
-  std::string Header(int64_t /*points*/) const override { return "x_mm,y_mm,z_mm,scan\n"; }
-  void Append(std::string* record, const Point& point, int scan) const override {
-    for (const double coordinate : point) {
-      AppendText(record, coordinate);
+  std::string Header(int64_t /*points*/) const override {
+    std::string header = "x_mm,y_mm,z_mm,";
+    for (const auto& [name, unit] : NamesOf(wants_)) header += name + unit + ",";
+    return header + "scan\n";
+  }
+  void Append(std::string* record, std::span<const double> numbers, int scan) const override {
+    for (const double number : numbers) {
+      AppendText(record, number);
       *record += ',';
     }
     AppendText(record, scan);
@@ -129,16 +153,18 @@ class CsvWriter : public Writer {
 class NpyWriter : public Writer {
  public:
   using Writer::Writer;
-  std::string Header(int64_t points) const override { return MakeNpyHeader(points, 3); }
-  void Append(std::string* record, const Point& point, int /*scan*/) const override {
-    for (const double coordinate : point) AppendBytes(record, coordinate);
+  std::string Header(int64_t points) const override {
+    return MakeNpyHeader(points, 3 + static_cast<int>(wants_.size()));
+  }
+  void Append(std::string* record, std::span<const double> numbers, int /*scan*/) const override {
+    for (const double number : numbers) AppendBytes(record, number);
   }
 };
 
 template <class Format>
-Result<std::unique_ptr<PointCloudWriter>> Start(const std::filesystem::path& path) {
+Result<std::unique_ptr<PointCloudWriter>> Start(const std::filesystem::path& path, const PointExtras& wants) {
   SCANCAL_ASSIGN_OR_RETURN(OutputFile file, OutputFile::Create(path));
-  auto writer = std::make_unique<Format>(std::move(file));
+  auto writer = std::make_unique<Format>(std::move(file), wants);
   SCANCAL_RETURN_IF_ERROR(writer->Start());
   return std::unique_ptr<PointCloudWriter>(std::move(writer));
 }
@@ -170,11 +196,12 @@ Result<Units> ParseUnits(const std::string& text) {
   return units;
 }
 
-Result<std::unique_ptr<PointCloudWriter>> CreatePointCloud(const std::filesystem::path& path) {
+Result<std::unique_ptr<PointCloudWriter>> CreatePointCloud(const std::filesystem::path& path,
+                                                           const PointExtras& wants) {
   const std::string extension = path.extension().string();
-  if (extension == ".ply") return Start<PlyWriter>(path);
-  if (extension == ".csv") return Start<CsvWriter>(path);
-  if (extension == ".npy") return Start<NpyWriter>(path);
+  if (extension == ".ply") return Start<PlyWriter>(path, wants);
+  if (extension == ".csv") return Start<CsvWriter>(path, wants);
+  if (extension == ".npy") return Start<NpyWriter>(path, wants);
   return Error{path.string() + ": found the extension '" + extension + "', expected .ply, .csv or .npy"};
 }
 

@@ -25,16 +25,30 @@ Result<std::vector<std::vector<double>>> ReadPoints(const PointRequest& request,
 
 Result<Units> ParseUnits(const std::string& text);  // "mm,deg": one of length, one of angle
 
-// By extension: .ply (binary little endian; double x, y, z; int scan), .csv (x_mm,y_mm,z_mm,scan; round-trip digits),
-// .npy (float64, shape (points, 3)). Streaming: memory does not grow with the number of points.
+// What stands beside the coordinates of a point: u_x, u_y, u_z in mm; xx, xy, xz, yy, yz, zz of its covariance in mm^2.
+struct PointExtras {
+  bool u = false, covariance = false;
+  size_t size() const { return (u ? 3 : 0) + (covariance ? 6 : 0); }
+};
+
+// By extension: .ply (binary little endian; double x, y, z, extras; int scan), .csv (x_mm,y_mm,z_mm,extras,scan;
+// round-trip digits), .npy (float64, shape (points, 3 + extras)). Streaming: memory does not grow with the number of
+// points.
 class PointCloudWriter {
  public:
   virtual ~PointCloudWriter() = default;
-  virtual Result<void> Write(std::span<const std::array<double, 3>> points_mm, int scan) = 0;
+  const PointExtras& wants() const { return wants_; }
+  // beside: wants().size() numbers a point, one point after the other.
+  virtual Result<void> Write(std::span<const std::array<double, 3>> points_mm, int scan,
+                             std::span<const double> beside = {}) = 0;
   virtual Result<void> Commit() = 0;
+
+ protected:
+  PointExtras wants_;
 };
 
 // An unknown extension: an error that lists them.
-Result<std::unique_ptr<PointCloudWriter>> CreatePointCloud(const std::filesystem::path& path);
+Result<std::unique_ptr<PointCloudWriter>> CreatePointCloud(const std::filesystem::path& path,
+                                                           const PointExtras& wants = {});
 
 }  // namespace scancal

@@ -60,12 +60,15 @@ struct ScannerKind {
   // From Scanner::Data(), without the scans: every digit of Calibrate() is the same. file: for messages.
   Result<std::unique_ptr<Scanner>> (*reload)(const Dataset& dataset, const Json& data, const std::string& file);
   // All points of the data set's scans in the frame of the calibration, which is of this model, streamed; returns their
-  // number.
+  // number. transforms_with_u: gives what the cloud wants beside them.
   Result<int64_t> (*transform)(const Dataset& dataset, const Calibration& calibration, PointCloudWriter* cloud);
   // Optional: points as the scanner shows them, in the frame of the calibration with their uncertainty; distances: of
   // each from the one before.
   Result<Propagation> (*propagate)(const Calibration& calibration, const PointRequest& points,
                                    bool distances) = nullptr;
+  bool transforms_with_u = false;
+  // Optional: features of an artifact that took no part, as a data set of this model declares and has scanned them.
+  Result<Verification> (*verify)(const Dataset& dataset, const Calibration& calibration) = nullptr;
 
   // An Error where there is none.
   Result<Propagation> Propagate(const Calibration& calibration, const PointRequest& points, bool distances) const;

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include "io/units.h"
 #include "report/text.h"
@@ -133,6 +134,73 @@ std::string ToText(const Selftest& selftest) {
          notes +
          fmt::format("\n{} of {} cases passed\nselftest: {}\n", passed, selftest.rows.size(),
                      selftest.ok() ? "pass" : "FAIL");
+}
+
+namespace {
+
+// Of a CSV file, in quotes where it has to be.
+std::string Cell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
+std::string ToText(const Verification& verification) {
+  TextTable table({"feature", "at", "kind", "nominal/mm", "measured/mm", "deviation/mm", "u calibration", "u noise",
+                   "u reference", "U/mm", "E_n", "form/mm", "points", "set aside"});
+  TextTable decisions({"feature", "at", "tolerance/mm", "guard band/mm", "decision", "p of a false accept"});
+  bool decided = false;
+  for (const VerifiedFeature& f : verification.features) {
+    table.Add({f.name, f.at, f.kind, Significant(f.nominal, 7), Concise(f.measured, f.u), Concise(f.deviation(), f.u),
+               Significant(f.u_calibration, 2), Significant(f.u_noise, 2), Significant(f.u_reference, 2),
+               Significant(f.U, 2), fmt::format("{:.2f}", f.E_n), Significant(f.form, 2), std::to_string(f.points),
+               std::to_string(f.set_aside)});
+    if (!f.conformity) continue;
+    decided = true;
+    const Conformity& c = *f.conformity;
+    decisions.Add({f.name, f.at, fmt::format("{:g} to {:g}", c.lower, c.upper), Significant(c.guard, 2),
+                   Name(c.decision),
+                   c.decision != Decision::kAccept ? "-"
+                   : c.p_outside < 1e-6            ? "< 1e-6"
+                                                   : fmt::format("{:.1g}", c.p_outside)});
+  }
+  std::string text = table.Text();
+  if (decided) text += "\n" + decisions.Text();
+  text += "\n";
+  for (const std::string& note : verification.notes) text += note + "\n";
+  if (verification.scale)
+    text += fmt::format(
+        "planes cannot see scale_y; these features do: scale_y = {}, U = {} ({}){}\n",
+        Concise(verification.scale->value, verification.scale->u), Significant(verification.scale->U, 2),
+        CoverageText(),
+        std::abs(verification.scale->value) > verification.scale->U
+            ? "; depth shows a scale error: declare it, `scale_y: {consider: ..., u: ...}`, and refine again"
+            : "");
+  const auto out = std::count_if(verification.features.begin(), verification.features.end(),
+                                 [](const VerifiedFeature& f) { return f.out(); });
+  text += out == 0 ? fmt::format("all {} features agree with their reference\n", verification.features.size())
+                   : fmt::format("{} of {} features are out: |E_n| above 1, or rejected\n", out,
+                                 verification.features.size());
+  return text;
+}
+
+std::string ToCsv(const Verification& verification) {
+  std::string text =
+      "feature,at,kind,nominal_mm,measured_mm,deviation_mm,u_calibration_mm,u_noise_mm,u_reference_mm,u_mm,dof,U_mm,"
+      "E_n,form_mm,points,set_aside,lower_mm,upper_mm,guard_mm,decision,p_outside\n";
+  for (const VerifiedFeature& f : verification.features) {
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},", Cell(f.name), Cell(f.at), f.kind, f.nominal,
+                        f.measured, f.deviation(), f.u_calibration, f.u_noise, f.u_reference, f.u, f.dof, f.U, f.E_n,
+                        f.form, f.points, f.set_aside);
+    if (f.conformity)
+      text += fmt::format("{},{},{},{},{}\n", f.conformity->lower, f.conformity->upper, f.conformity->guard,
+                          Name(f.conformity->decision), f.conformity->p_outside);
+    else text += ",,,,\n";
+  }
+  return text;
 }
 
 }  // namespace scancal

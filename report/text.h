@@ -11,10 +11,12 @@ std::string ToText(const Calibration& calibration);
 std::string ToText(const Comparison& comparison);
 std::string ToText(const Propagation& propagation);
 std::string ToText(const Selftest& selftest);
+std::string ToText(const Verification& verification);
 
 // One line a point, with its distance from the one before where there are distances. mm and deg; a table of points that
 // can be read again.
 std::string ToCsv(const Propagation& propagation);
+std::string ToCsv(const Verification& verification);  // a line a feature, mm
 
 class TextTable {
  public:

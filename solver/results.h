@@ -2,11 +2,13 @@
 #pragma once
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 #include "solver/problem.h"
 #include "solver/sentence.h"
+#include "solver/uncertainty/conformity.h"
 #include "solver/uncertainty/measurand.h"
 
 namespace scancal {
@@ -45,6 +47,10 @@ struct PropagatedDistance {
   MeasurandUncertainty uncertainty;
 };
 
+struct ScaleFound {
+  double value = 0, u = 0, U = 0;
+};
+
 struct Propagation {
   std::vector<std::string> reading;  // names of its numbers
   std::vector<Unit> units;           // of its numbers
@@ -52,6 +58,30 @@ struct Propagation {
   std::vector<PropagatedDistance> distances;
   std::vector<std::string> notes;     // what the figures do not hold
   std::vector<std::string> warnings;  // worth knowing
+};
+
+// A feature of known size, measured with a calibrated scanner; mm.
+struct VerifiedFeature {
+  std::string name, at;  // features of one name have one reference; where it was seen
+  std::string kind;      // "diameter", "distance", "step"
+  double nominal = 0, measured = 0;
+  double u_calibration = 0, u_noise = 0, u_reference = 0;
+  double u = 0, dof = 0, U = 0, E_n = 0;  // of the deviation
+  double form = 0;                        // rms of the points' distances from the fitted shape
+  size_t points = 0, set_aside = 0;
+  std::optional<Conformity> conformity;  // where a tolerance is given
+  double deviation() const { return measured - nominal; }
+  bool out() const { return std::abs(E_n) > 1 || (conformity && conformity->decision == Decision::kReject); }
+};
+
+struct Verification {
+  std::vector<VerifiedFeature> features;
+  // Of depth, from all deviations: true = shown (1 + scale); the calibration does not know it.
+  std::optional<ScaleFound> scale;
+  std::vector<std::string> notes;
+  bool out() const {
+    return std::any_of(features.begin(), features.end(), [](const VerifiedFeature& f) { return f.out(); });
+  }
 };
 
 // Of the quantity that comes closest to failing: -log10 of its relative error, at most what the known answer has.

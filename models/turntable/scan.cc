@@ -10,6 +10,7 @@
 #include "models/turntable/compress.h"
 #include "models/turntable/planes_file.h"
 #include "models/turntable/range_image.h"
+#include "models/turntable/verify.h"
 
 namespace scancal::turntable {
 namespace {
@@ -195,12 +196,40 @@ Result<void> TakeIn(std::vector<RawProfile> profiles, const ScanDeclaration& dec
   return {};
 }
 
+Result<std::unique_ptr<ScanReader>> OpenScan(const ScanDeclaration& scan, const Senses& senses) {
+  SCANCAL_ASSIGN_OR_RETURN(std::unique_ptr<ScanReader> reader, ScanReader::Open(scan.format));
+  if (reader->gives_heights() && !senses.depth_declared) return HeightsWithoutSense(scan);
+  return reader;
+}
+
 }  // namespace
+
+Result<SensorColumns> ReadKept(const ScanDeclaration& scan, const Senses& senses) {
+  SCANCAL_ASSIGN_OR_RETURN(const auto reader, OpenScan(scan, senses));
+  ScanBatch batch;
+  SensorColumns points, all;
+  PointsChecksum checksum;
+  size_t run = 0;
+  for (;;) {
+    SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
+    if (!more) break;
+    ToSensor(senses, batch, &points);
+    SCANCAL_ASSIGN_OR_RETURN(std::vector<char> kept, Kept(scan, batch, points));
+    if (scan.plane) {
+      KeepPlane(*scan.plane, checksum.points(), &run, &kept);
+      checksum.Add(batch);
+    }
+    for (const auto column : {&SensorColumns::alpha, &SensorColumns::y, &SensorColumns::z, &SensorColumns::range})
+      for (size_t i = 0; i < (points.*column).size(); ++i)
+        if (kept[i]) (all.*column).push_back((points.*column)[i]);
+  }
+  if (scan.plane) SCANCAL_RETURN_IF_ERROR(CheckSameScan(scan, checksum));
+  return all;
+}
 
 Result<RawScan> ReadScan(const ScanDeclaration& scan, const Senses& senses,
                          const std::function<void(double)>& progress) {
-  SCANCAL_ASSIGN_OR_RETURN(const auto reader, ScanReader::Open(scan.format));
-  if (reader->gives_heights() && !senses.depth_declared) return HeightsWithoutSense(scan);
+  SCANCAL_ASSIGN_OR_RETURN(const auto reader, OpenScan(scan, senses));
   Gatherer gatherer(scan.format.path);
   ScanBatch batch;
   SensorColumns points;

@@ -8,6 +8,7 @@
 #include "models/turntable/declare.h"
 #include "models/turntable/search.h"
 #include "models/turntable/use.h"
+#include "models/turntable/verify.h"
 
 namespace scancal::turntable {
 
@@ -118,6 +119,6 @@ Result<std::unique_ptr<Scanner>> Compress(const Declaration& declaration, const 
 Result<std::unique_ptr<scancal::Scanner>> Load(const Dataset& dataset);
 Result<std::unique_ptr<scancal::Scanner>> Reload(const Dataset& dataset, const Json& data, const std::string& file);
 
-inline constexpr ScannerKind kKind = {"turntable", &Load, &Reload, &Transform, &Propagate};
+inline constexpr ScannerKind kKind = {"turntable", &Load, &Reload, &Transform, &Propagate, true, &Verify};
 
 }  // namespace scancal::turntable

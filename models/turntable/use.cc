@@ -37,12 +37,6 @@ std::vector<std::vector<double>> GridOver(const ScannedVolume& volume) {
   return nodes;
 }
 
-double UOfSource(const Calibration& calibration, const std::string& source) {
-  for (const BudgetLine& line : calibration.budget)
-    if (line.source.english == source) return line.u;
-  return 0;
-}
-
 // What a point has besides, if it is one reading and no mean. The budget names it where the fit is weighted.
 std::string OneReading(const Calibration& calibration, const std::vector<PropagatedPoint>& points) {
   const double noise =
@@ -104,12 +98,24 @@ std::string ScannedVolume::Beyond(double at_alpha, double at_y, double at_z) con
   return "";
 }
 
+double WholeTurnsAway(const ScannedVolume& volume, double alpha) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  const double middle = (volume.alpha[0] + volume.alpha[1]) / 2;
+  return Within(alpha, volume.alpha) ? alpha : alpha - kTurn * std::round((alpha - middle) / kTurn);
+}
+
 ScannedVolume VolumeOf(const std::vector<Placement>& placements) {
   ScannedVolume volume;
   for (const Placement& placement : placements)
     for (const Profile& profile : placement.profiles)
       for (const PseudoPoint& end : Ends(profile.factor)) volume.Extend(profile.alpha, end.y, end.z);
   return volume;
+}
+
+double UOfSource(const Calibration& calibration, const std::string& source) {
+  for (const BudgetLine& line : calibration.budget)
+    if (line.source.english == source) return line.u;
+  return 0;
 }
 
 Result<System> SystemOf(const Calibration& calibration) {
@@ -149,23 +155,45 @@ Result<PointUncertainty> PointUncertainty::From(const Calibration& calibration) 
   return result;
 }
 
-Eigen::MatrixXd PointUncertainty::ByJoint(const System::Derivatives& of) const {
-  Eigen::MatrixXd by = Eigen::MatrixXd::Zero(3, std::ssize(index_));
+Eigen::MatrixXd PointUncertainty::ByJoint(const Eigen::Ref<const Eigen::MatrixXd>& by_system) const {
+  Eigen::MatrixXd by = Eigen::MatrixXd::Zero(by_system.rows(), std::ssize(index_));
   for (Eigen::Index k = 0; k < std::ssize(index_); ++k)
-    if (index_[k] >= 0 && index_[k] < of.by.cols()) by.col(k) = of.by.col(index_[k]);  // a form moves none
+    if (index_[k] >= 0 && index_[k] < by_system.cols()) by.col(k) = by_system.col(index_[k]);  // a form moves none
   return by;
+}
+
+MeasurandUncertainty PointUncertainty::Of(const Eigen::Ref<const Eigen::MatrixXd>& by_system,
+                                          Eigen::VectorXd* scale) const {
+  const Eigen::MatrixXd by = ByJoint(by_system);
+  if (!scale) return UncertaintyOf(joint_, by);
+  const auto q = std::find(index_.begin() + joint_.own.rows(), index_.end(), Model::kScaleY) - index_.begin();
+  *scale = by_system.col(Model::kScaleY);
+  if (q == std::ssize(index_)) {
+    *scale += system_.M() * by_system.col(Model::kM) + system_.N() * by_system.col(Model::kN);
+    return UncertaintyOf(joint_, by);
+  }
+  const double variance = joint_.matrix(q, q);
+  *scale = by * joint_.matrix.col(q) / variance;
+  MeasurandUncertainty of = UncertaintyOf(joint_, by);
+  of.covariance -= *scale * scale->transpose() * variance;
+  return of;
 }
 
 PropagatedPoint PointUncertainty::At(double alpha, double y, double z) const {
   const System::Derivatives of = system_.Differentiate(alpha, y, z);
-  return {{alpha, y, z}, of.point, UncertaintyOf(joint_, ByJoint(of))};
+  return {{alpha, y, z}, of.point, UncertaintyOf(joint_, ByJoint(of.by))};
+}
+
+Eigen::Matrix3d PointUncertainty::CovarianceAt(double alpha, double y, double z) const {
+  const Eigen::MatrixXd by = ByJoint(system_.Differentiate(alpha, y, z).by);
+  return by * joint_.matrix * by.transpose();
 }
 
 PropagatedDistance PointUncertainty::Between(const PropagatedPoint& a, const PropagatedPoint& b) const {
   const auto of = [&](const PropagatedPoint& p) {
     return system_.Differentiate(p.reading[0], p.reading[1], p.reading[2]);
   };
-  const Eigen::MatrixXd by = ByJoint(of(b)) - ByJoint(of(a));
+  const Eigen::MatrixXd by = ByJoint(of(b).by - of(a).by);
   Eigen::Vector3d along = b.position - a.position;
   const double value = along.norm();
   if (value > 0) {
@@ -211,8 +239,7 @@ Result<std::vector<std::vector<double>>> Readings(const PointRequest& points, co
     for (std::vector<double>& p : read) {
       if (is_lidar) p = {p[0], p[2] * std::cos(p[1]), p[2] * std::sin(p[1])};
       if (is_reading) p = {points.angle_sense * p[0], points.depth_sense * p[1], p[2]};
-      const double middle = (volume.alpha[0] + volume.alpha[1]) / 2, turn = 2 * std::numbers::pi;
-      if (!Within(p[0], volume.alpha)) p[0] -= turn * std::round((p[0] - middle) / turn);
+      p[0] = WholeTurnsAway(volume, p[0]);
       readings.push_back(p);
     }
   };
@@ -243,6 +270,12 @@ Result<std::vector<std::vector<double>>> Readings(const PointRequest& points, co
   return readings;
 }
 
+void AppendExtras(const Eigen::Matrix3d& covariance, const PointExtras& wants, std::vector<double>* numbers) {
+  for (int i = 0; wants.u && i < 3; ++i) numbers->push_back(std::sqrt(std::max(0.0, covariance(i, i))));
+  for (int i = 0; wants.covariance && i < 3; ++i)
+    for (int j = i; j < 3; ++j) numbers->push_back(covariance(i, j));
+}
+
 }  // namespace
 
 Result<Propagation> Propagate(const Calibration& calibration, const PointRequest& points, bool distances) {
@@ -271,6 +304,10 @@ Result<int64_t> Transform(const Dataset& dataset, const Calibration& calibration
   SCANCAL_ASSIGN_OR_RETURN(const Declaration declaration, Declare(dataset, &model, /*searches=*/false));
   std::set<std::pair<std::filesystem::path, decltype(TextFormat::where)>>
       done;  // several targets may be regions of one scan, which is written whole, once
+  std::optional<PointUncertainty> uncertainty;
+  if (cloud->wants().size() > 0) {
+    SCANCAL_ASSIGN_OR_RETURN(uncertainty, PointUncertainty::From(calibration));
+  }
   int64_t points = 0;
   int number = 0;
   for (ScanDeclaration scan : declaration.scans) {
@@ -281,16 +318,20 @@ Result<int64_t> Transform(const Dataset& dataset, const Calibration& calibration
     ScanBatch batch;
     SensorColumns sensor;
     std::vector<std::array<double, 3>> transformed;
+    std::vector<double> beside;
     for (;;) {
       SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
       if (!more) break;
       ToSensor(declaration.senses, batch, &sensor);
       transformed.clear();
+      beside.clear();
       for (size_t i = 0; i < batch.size(); ++i) {
+        if (uncertainty)
+          AppendExtras(uncertainty->CovarianceAt(sensor.alpha[i], sensor.y[i], sensor.z[i]), cloud->wants(), &beside);
         const Eigen::Vector3d p = system.Point(sensor.alpha[i], sensor.y[i], sensor.z[i]);
         transformed.push_back({p.x(), p.y(), p.z()});
       }
-      SCANCAL_RETURN_IF_ERROR(cloud->Write(transformed, number));
+      SCANCAL_RETURN_IF_ERROR(cloud->Write(transformed, number, beside));
       points += static_cast<int64_t>(transformed.size());
       progress.Show(static_cast<double>(reader->bytes_read()) /
                     static_cast<double>(std::max<int64_t>(1, reader->bytes_total())));

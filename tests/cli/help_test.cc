@@ -65,25 +65,27 @@ TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
                                                    "sign", "accept_unreliable"));
   EXPECT_THAT(HelpFlags("report"), ElementsAre("out", "pdf", "dcc", "figures", "previous", "language", "key"));
   EXPECT_THAT(HelpFlags("recheck"), ElementsAre("key", "sign"));
+  EXPECT_THAT(HelpFlags("verify"), ElementsAre("at", "out", "unreliable", "key"));
   EXPECT_THAT(HelpFlags("diff"), ElementsAre("format", "unreliable", "key"));
   EXPECT_THAT(HelpFlags("history"), ElementsAre("format", "out", "language", "unreliable", "key"));
   EXPECT_THAT(HelpFlags("compare"), ElementsAre("steps", "surface"));
   EXPECT_THAT(HelpFlags("convert"), ElementsAre("as"));
   EXPECT_THAT(HelpFlags("planes"), ElementsAre("out"));
   EXPECT_THAT(HelpFlags("selftest"), ElementsAre("nist"));
-  EXPECT_THAT(HelpFlags("transform"), UnorderedElementsAre("calibration", "out", "unreliable", "key"));
+  EXPECT_THAT(HelpFlags("transform"),
+              UnorderedElementsAre("calibration", "out", "u", "covariance", "unreliable", "key"));
   EXPECT_THAT(HelpFlags("propagate"),
               UnorderedElementsAre("point", "points_file", "units", "distance", "out", "unreliable", "key"));
-  EXPECT_THAT(HelpFlags("simulate"),
-              UnorderedElementsAre("out", "M", "N", "tilt_x", "tilt_y", "scale_y", "scale_z", "shear", "linearity",
-                                   "encoder_cos1", "encoder_sin1", "encoder_cos2", "encoder_sin2", "expansion",
-                                   "linearity_3", "lens_z2", "lens_yz", "lens_yz2", "range_offset", "range_scale",
-                                   "encoder_scale", "back", "drift_sweep", "drift", "angle_step", "profile_offset",
-                                   "profile_correlation", "placements", "profiles", "points", "sweep", "line_length",
-                                   "noise", "line_correlation", "encoder_jitter", "form", "form_kind", "one_plate",
-                                   "outliers", "background", "declare", "missing", "search_width_M", "search_width_N",
-                                   "seed", "format", "model", "stations", "poses", "translations", "configuration",
-                                   "ball_noise", "repeatability", "u_artifact", "check_positions", "planes"));
+  EXPECT_THAT(
+      HelpFlags("simulate"),
+      UnorderedElementsAre(
+          "out", "M", "N", "tilt_x", "tilt_y", "scale_y", "scale_z", "shear", "linearity", "encoder_cos1",
+          "encoder_sin1", "encoder_cos2", "encoder_sin2", "expansion", "linearity_3", "lens_z2", "lens_yz", "lens_yz2",
+          "range_offset", "range_scale", "encoder_scale", "back", "drift_sweep", "drift", "angle_step",
+          "profile_offset", "profile_correlation", "placements", "profiles", "points", "sweep", "line_length", "noise",
+          "line_correlation", "encoder_jitter", "form", "form_kind", "one_plate", "outliers", "background", "declare",
+          "missing", "search_width_M", "search_width_N", "seed", "format", "model", "stations", "poses", "translations",
+          "configuration", "ball_noise", "repeatability", "u_artifact", "check_positions", "planes", "artifact"));
 }
 
 TEST(HelpTest, FlagsHaveUnitsAndDefaults) {

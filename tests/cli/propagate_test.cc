@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include "io/units.h"
 #include "tests/cli/data_set.h"
 
@@ -167,6 +168,44 @@ TEST_F(PropagateTest, ACalibrationOfAnOlderVersionIsRefused) {
   WriteWhole(calibration_, R"({"scancal": 1, "model": "sextant", "status": "ok", "parameters": []})");
   EXPECT_THAT(Refusal({"--point=0,50,0"}),
               HasSubstr("calibration.json: model: found \"sextant\", expected one of: turntable"));
+}
+
+// transform --u and propagate agree to the digits, in each format.
+TEST_F(PropagateTest, ACloudHasTheUOfItsPoints) {
+  EXPECT_EQ(Propagate({"--points_file=" + (data_ / "left.csv").string(), "--out=" + Path("p.csv").string()}).exit_code,
+            0);
+  const auto transform = [&](const std::string& name, std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"transform", data_.string(), "--calibration=" + calibration_.string(),
+                                 "--out=" + Path(name).string()});
+    const Outcome outcome = RunScancal(flags);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return ReadWhole(Path(name));
+  };
+  transform("c.csv", {"--u", "--covariance"});
+  const auto points = Cells(Path("p.csv")), cloud = Cells(Path("c.csv"));
+  ASSERT_EQ(points.size(), 801U);
+  ASSERT_EQ(cloud.size(), 2401U);
+  EXPECT_EQ(cloud[0].size(), 13U);
+  for (size_t row = 1; row < points.size(); row += 7) {
+    for (const auto& [there, here] : {std::pair{"X_mm", "x_mm"},
+                                      {"Z_mm", "z_mm"},
+                                      {"u_X_mm", "u_x_mm"},
+                                      {"u_Y_mm", "u_y_mm"},
+                                      {"u_Z_mm", "u_z_mm"},
+                                      {"cov_XY_mm2", "cov_xy_mm2"},
+                                      {"cov_XZ_mm2", "cov_xz_mm2"},
+                                      {"cov_YZ_mm2", "cov_yz_mm2"}})
+      ASSERT_EQ(CellOf(points, row, there), CellOf(cloud, row, here)) << row << " " << here;
+    ASSERT_NEAR(std::pow(CellOf(points, row, "u_Y_mm"), 2), CellOf(cloud, row, "cov_yy_mm2"), 1e-15);
+  }
+  const std::string ply = transform("c.ply", {"--u"});
+  EXPECT_THAT(ply.substr(0, 400), AllOf(HasSubstr("property double z\nproperty double u_x\n"), Not(HasSubstr("cov"))));
+  const size_t at = ply.find("end_header\n") + 11;
+  ASSERT_EQ(ply.size(), at + 2400 * (6 * sizeof(double) + sizeof(int32_t)));
+  double u_x = 0;
+  std::memcpy(&u_x, ply.data() + at + 3 * sizeof(double), sizeof u_x);
+  EXPECT_EQ(u_x, CellOf(cloud, 1, "u_x_mm"));
+  EXPECT_THAT(transform("c.npy", {"--covariance"}), HasSubstr("'shape': (2400, 9)"));
 }
 
 TEST_F(PropagateTest, TheVolumeIsInTheResult) {
