@@ -18,6 +18,7 @@
 DEFINE_string(out, "", "folder or file to write");
 DEFINE_bool(report, false, "write report.html beside calibration.json, as scancal report does");
 DEFINE_bool(accept_unreliable, false, "exit code 0 in place of 2: what was computed is done, for engines that repeat");
+DEFINE_bool(wide, false, "every column and table; else, of many quantities, what fits into 100 columns");
 DEFINE_bool(resume, false, "nothing to do where --out has the result of the same files and flags; done.json tells");
 DECLARE_string(language);
 DECLARE_string(sign);
@@ -93,7 +94,7 @@ int CalibrateAndReport(const std::vector<std::string>& arguments, const RefineCh
   }
   const Result<Calibrated> done = Calibrate(arguments, choice);
   if (!done.ok()) return Complain(done.error().message);
-  std::printf("%s", ToText(done->calibration).c_str());
+  Print(ToText(done->calibration, FLAGS_wide));
   if (FLAGS_report) {
     std::fflush(stdout);
     const Result<Rechecked> again = Recheck(file, /*monte_carlo=*/false);  // it was drawn a moment ago
@@ -126,7 +127,7 @@ Result<Dataset> ReadOnlyArgument(const std::vector<std::string>& arguments) {
 
 Result<std::unique_ptr<Scanner>> LoadAndEcho(const std::vector<std::string>& arguments) {
   SCANCAL_ASSIGN_OR_RETURN(std::unique_ptr<Scanner> scanner, Load(arguments));
-  std::printf("%s\n\n", scanner->Describe().c_str());
+  std::printf("%s\n", scanner->Describe().c_str());
   return scanner;
 }
 

@@ -27,6 +27,8 @@ extern const Command kRefineCommand, kMonteCarloCommand, kCompareCommand, kSimul
 inline constexpr int kTrusted = 0, kBadInput = 1, kUnreliable = 2;
 inline constexpr int kFoundOut = kUnreliable;  // a command that asks whether all is well: it is not
 
+// To standard output; on a terminal, sentences in lines of at most 100 columns.
+void Print(const std::string& text);
 int Complain(const std::string& sentence);  // to standard error; returns kBadInput
 std::string CommandLine();                  // as typed, quoted where a shell needs it
 Result<void> CheckLanguage();               // that --language is one that the page of the report speaks

@@ -7,6 +7,7 @@
 #include "io/number.h"
 #include "report/text.h"
 
+DECLARE_bool(wide);
 DEFINE_string(steps, "1,0.1", "of the published grid search, mm; 0.01 takes seconds");
 DEFINE_string(surface, "",
               "CSV file to write: the search's objective S over M and N at the declared step (Fig. 6 of the paper)");
@@ -41,7 +42,7 @@ Result<Comparison> Compared(const std::vector<std::string>& arguments) {
 int RunCompare(const std::vector<std::string>& arguments) {
   const Result<Comparison> comparison = Compared(arguments);
   if (!comparison.ok()) return Complain(comparison.error().message);
-  std::printf("%s", ToText(*comparison).c_str());
+  Print("\n" + ToText(*comparison, FLAGS_wide));
   return kTrusted;
 }
 
@@ -50,7 +51,7 @@ int RunCompare(const std::vector<std::string>& arguments) {
 const Command kCompareCommand = {"compare",
                                  "DATASET",
                                  "the published grid search and the joint refinements on the same data, one table",
-                                 {{"steps"}, {"surface"}},
+                                 {{"steps"}, {"surface"}, {"wide"}},
                                  &RunCompare};
 
 }  // namespace scancal

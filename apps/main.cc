@@ -4,12 +4,14 @@
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 #include <malloc.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include "apps/command.h"
 #include "io/file_kind.h"
+#include "report/text.h"
 
 DECLARE_bool(help);
 DECLARE_bool(version);
@@ -104,6 +106,14 @@ int Main(int argc, char** argv) {
 }
 
 }  // namespace
+
+void Print(const std::string& text) {
+  constexpr size_t kColumns = 100;
+  winsize window{};
+  const bool terminal = isatty(STDOUT_FILENO) && ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0;
+  const std::string shown = terminal ? Wrapped(text, std::min<size_t>(kColumns, window.ws_col)) : text;
+  std::fwrite(shown.data(), 1, shown.size(), stdout);
+}
 
 int Complain(const std::string& sentence) {
   std::fflush(stdout);

@@ -39,6 +39,7 @@ const Command kMonteCarloCommand = {"montecarlo",
                                      {"seed", "of all draws: the same seed gives the same digits"},
                                      {"digits"},
                                      {"threads"},
+                                     {"wide"},
                                      {"sign"},
                                      {"accept_unreliable"}},
                                     &RunMonteCarlo};

@@ -60,6 +60,7 @@ const Command kRefineCommand = {
      {"weights"},
      {"max_iterations"},
      {"montecarlo"},
+     {"wide"},
      {"sign"},
      {"batch"},
      {"threads", "with --batch: data sets at a time; of a Monte Carlo. 0: one for every core"},

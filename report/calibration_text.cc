@@ -21,9 +21,13 @@ std::string Dof(double dof) { return dof < 1e6 ? Count(std::floor(dof)) : "infin
 std::string Percent(double share) { return share < 0.0005 ? "0.0" : fmt::format("{:.1f}", 100 * share); }
 
 std::string Sources(const Calibration& c) {
-  TextTable table({"u comes from", "type", "value", "unit", "dof"});
-  for (const BudgetLine& line : c.budget)
-    table.Add({line.source, std::string(1, line.type), Significant(line.u, 2), Name(line.unit), Dof(line.dof)});
+  TextTable table({"u comes from", "type", "value", "unit", "dof", "share of u^2/%", "most of"});
+  for (const BudgetLine& line : c.budget) {
+    const auto [least, most] = std::minmax_element(line.share.begin(), line.share.end());
+    if (most == line.share.end()) continue;
+    table.Add({line.source, std::string(1, line.type), Significant(line.u, 2), Name(line.unit), Dof(line.dof),
+               Percent(*least) + " to " + Percent(*most), c.estimated[static_cast<size_t>(most - line.share.begin())]});
+  }
   return table.Text();
 }
 
@@ -66,10 +70,28 @@ std::string MovesByParameter(const Calibration& c) {
   return table.Text() + "\n";
 }
 
-// Value and uncertainties of every parameter that is estimated, considered or held off its nominal value.
-std::string ParametersText(const Calibration& c) {
-  TextTable table({"", "value", "unit", "u", "U (" + CoverageText() + ")", "k", "dof", "u naive", "u clustered",
-                   "u jackknife", "u bootstrap"});
+// "without target 7 a_2 moves most: by -1.84 u".
+std::string MostMoved(const Calibration& c) {
+  size_t target = 0, parameter = 0;
+  for (size_t t = 0; t < c.jackknife.size(); ++t)
+    for (size_t k = 0; k < c.estimated.size(); ++k)
+      if (std::abs(MoveInU(c, t, k)) > std::abs(MoveInU(c, target, parameter))) target = t, parameter = k;
+  return fmt::format("without target {} {} moves most: by {:+.2f} u\n\n", c.targets[target].name,
+                     c.estimated[parameter], MoveInU(c, target, parameter));
+}
+
+// Value and uncertainties of every parameter that is estimated, considered or held off its nominal value. wide: by
+// every estimator of u.
+std::string ParametersText(const Calibration& c, bool wide) {
+  std::vector<std::string> header = {"", "value", "unit", "u", "U (" + CoverageText() + ")", "k", "dof"};
+  if (wide) header.insert(header.end(), {"u naive", "u clustered", "u jackknife", "u bootstrap"});
+  else header.emplace_back();
+  TextTable table(header);
+  const auto add = [&](std::vector<std::string> row, const std::string& remark) {
+    row.resize(header.size() - 1);
+    row.push_back(remark);
+    table.Add(row);
+  };
   std::map<std::string, int> considered;  // source -> parameters that are nominally zero and share it
   for (const Parameter& p : c.parameters)
     if (p.role == Role::kConsider && p.value == 0 && p.source != p.name) ++considered[p.source];
@@ -78,26 +100,27 @@ std::string ParametersText(const Calibration& c) {
     const auto shared = considered.find(p.source);
     if (p.role == Role::kConsider && p.value == 0 && shared != considered.end()) {
       if (shared->second > 0)
-        table.Add({fmt::format("{} ({} quantities)", p.source, shared->second), Concise(0, p.u), Name(p.unit),
-                   Shown(p.u), "", "", "", "", "", "", "considered"});
+        add({fmt::format("{} ({} quantities)", p.source, shared->second), Concise(0, p.u), Name(p.unit), Shown(p.u)},
+            "considered");
       shared->second = 0;
       continue;
     }
     if (p.role != Role::kEstimate) {
-      table.Add({p.name, Concise(p.value, p.u), Name(p.unit), Shown(p.u), "", "", "", "", "", "",
-                 p.role == Role::kHold ? "held" : "considered"});
+      add({p.name, Concise(p.value, p.u), Name(p.unit), Shown(p.u)}, p.role == Role::kHold ? "held" : "considered");
       continue;
     }
-    table.Add({p.name, Concise(p.value, p.u), Name(p.unit), Shown(p.u), Shown(p.U), Significant(p.k, 3), Dof(p.dof),
-               Shown(p.u_naive), Shown(p.u_clustered), Shown(p.u_jackknife), Shown(p.u_bootstrap)});
+    std::vector<std::string> row = {p.name,     Concise(p.value, p.u), Name(p.unit), Shown(p.u),
+                                    Shown(p.U), Significant(p.k, 3),   Dof(p.dof)};
+    if (wide) row.insert(row.end(), {Shown(p.u_naive), Shown(p.u_clustered), Shown(p.u_jackknife)});
+    add(std::move(row), wide ? Shown(p.u_bootstrap) : "");
   }
   return table.Text();
 }
 
 // Which target moves which parameter, in units of its u.
-std::string LeaveOneOutText(const Calibration& c) {
+std::string LeaveOneOutText(const Calibration& c, bool wide) {
   if (c.jackknife.empty()) return "";
-  if (c.estimated.size() > kFewParameters) return MovesByParameter(c);
+  if (c.estimated.size() > kFewParameters) return wide ? MovesByParameter(c) : MostMoved(c);
   std::vector<std::string> header = {"without target"};
   for (const std::string& name : c.estimated) header.push_back(name + " moves by");
   TextTable table(header);
@@ -112,8 +135,8 @@ std::string LeaveOneOutText(const Calibration& c) {
 }
 
 // Where u comes from: the budget, and its sum. With many parameters one line for each, the shares across.
-std::string BudgetText(const Calibration& c) {
-  if (c.estimated.size() > kFewParameters) return Sources(c) + "\n" + Shares(c);
+std::string BudgetText(const Calibration& c, bool wide) {
+  if (c.estimated.size() > kFewParameters) return Sources(c) + (wide ? "\n" + Shares(c) : "");
   std::vector<std::string> header = {"u comes from", "type", "value", "unit", "dof"};
   for (const std::string& name : c.estimated) {
     header.push_back("u(" + name + ")");
@@ -225,14 +248,23 @@ bool HasDeclared(const Calibration& c) {
                      [](const BudgetLine& line) { return line.type == 'B' && !line.random; });
 }
 
+// Where one looks first, and last.
+std::string StatusText(const Calibration& c) {
+  std::string text;
+  for (const std::string& reason : c.unreliable) text += "unreliable: " + reason + "\n";
+  return text + "status: " + (c.ok() ? "ok" : "unreliable") + "\n";
+}
+
 }  // namespace
 
-std::string ToText(const Calibration& c) {
-  std::string text = ParametersText(c);
-  if (!c.estimated.empty()) text += "\n" + BudgetText(c);
+std::string ToText(const Calibration& c, bool wide) {
+  wide = wide || c.estimated.size() <= kFewParameters;
+  const std::string status = StatusText(c);
+  std::string text = status + "\n" + ParametersText(c, wide);
+  if (!c.estimated.empty()) text += "\n" + BudgetText(c, wide);
   if (!HasDeclared(c)) text += "repeatability and fit only: not a traceable uncertainty\n";
   if (c.monte_carlo.trials > 0) text += "\n" + MonteCarloText(c);
-  text += "\n" + Targets(c) + "\n" + LeaveOneOutText(c);
+  text += "\n" + Targets(c) + "\n" + LeaveOneOutText(c, wide);
   text += GridText(c.grid) + CheckText(c.check);
   text += "refinement: " + c.residual + " residual, " + std::to_string(c.iterations) + " iterations, " +
           Significant(c.seconds * 1000, 3) + " ms; sigma = " + Significant(c.sigma, 4) + " mm" +
@@ -255,12 +287,11 @@ std::string ToText(const Calibration& c) {
     text += "k of " + std::to_string(c.estimated.size()) + " quantities jointly (" + CoverageText() +
             " region): " + Significant(c.joint.k, 3) + "; of one: see the table\n";
   text += VolumeText(c.volume);
+  if (!wide) text += "u by every estimator, shares and moves of every quantity: --wide\n";
   text += "\n";
   for (const std::string& note : c.notes) text += "note: " + note + "\n";
   for (const std::string& warning : c.warnings) text += "warning: " + warning + "\n";
-  for (const std::string& reason : c.unreliable) text += "unreliable: " + reason + "\n";
-  text += std::string("status: ") + (c.ok() ? "ok" : "unreliable") + "\n";
-  return text;
+  return text + status;
 }
 
 }  // namespace scancal

@@ -60,18 +60,26 @@ std::string DistanceTable(const Propagation& propagation) {
 
 }  // namespace
 
-std::string ToText(const Comparison& comparison) {
+std::string ToText(const Comparison& comparison, bool wide) {
   std::vector<std::string> header = {"method"};
-  for (const ComparisonColumn& column : comparison.columns) header.push_back(column.name);
+  std::vector<size_t> shown;
+  for (size_t k = 0; k < comparison.columns.size(); ++k) {
+    if (comparison.columns[k].detail && !wide) continue;
+    shown.push_back(k);
+    header.push_back(comparison.columns[k].name);
+  }
   TextTable table(header);
   std::string notes;
   for (const ComparisonRow& row : comparison.rows) {
     if (!row.note.empty()) notes += row.method.english + ": " + row.note.english + "\n";
     std::vector<std::string> cells = {row.method};
-    for (size_t k = 0; k < row.cells.size(); ++k) cells.push_back(CellText(row.cells[k], comparison.columns[k].digits));
+    for (const size_t k : shown)
+      if (k < row.cells.size()) cells.push_back(CellText(row.cells[k], comparison.columns[k].digits));
     cells.resize(header.size(), "-");
     table.Add(cells);
   }
+  const size_t more = comparison.columns.size() - shown.size();
+  if (more > 0) notes += fmt::format("{} more columns: --wide\n", more);
   return table.Text() + notes;
 }
 

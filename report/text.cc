@@ -68,6 +68,28 @@ std::string Concise(double value, double u) {
   return Fixed(value, -last) + "(" + Fixed(u / std::pow(10, last), 0) + ")";
 }
 
+std::string Wrapped(const std::string& text, size_t columns) {
+  std::string wrapped;
+  for (size_t from = 0; from < text.size();) {
+    const size_t end = std::min(text.find('\n', from), text.size());
+    std::string line = text.substr(from, end - from);
+    from = end + 1;
+    const bool of_table = line.find("  ") != std::string::npos || line.starts_with("----");
+    for (std::string indent; !of_table && Width(line) > columns; indent = "  ") {
+      size_t blank = std::string::npos;
+      for (size_t at = line.find(' ', indent.size()); at != std::string::npos; at = line.find(' ', at + 1)) {
+        if (Width(line.substr(0, at)) > columns && blank != std::string::npos) break;
+        blank = at;
+      }
+      if (blank == std::string::npos) break;
+      wrapped += line.substr(0, blank) + "\n";
+      line = "  " + line.substr(blank + 1);
+    }
+    wrapped += line + "\n";
+  }
+  return wrapped;
+}
+
 std::string CoverageText() { return fmt::format("{:g} %", 100 * kCoverage); }
 
 }  // namespace scancal

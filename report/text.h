@@ -7,8 +7,9 @@
 
 namespace scancal {
 
-std::string ToText(const Calibration& calibration);
-std::string ToText(const Comparison& comparison);
+// wide: every column and table. Else, of many quantities and columns, what tells most in 100 columns.
+std::string ToText(const Calibration& calibration, bool wide = true);
+std::string ToText(const Comparison& comparison, bool wide = true);
 std::string ToText(const Propagation& propagation);
 std::string ToText(const Selftest& selftest);
 std::string ToText(const Verification& verification);
@@ -35,5 +36,8 @@ std::string Count(double number);                   // whole, without exponent
 std::string Significant(double value, int digits);  // never in exponents between 1e-4 and 1e6
 
 std::string CoverageText();  // "95 %", of kCoverage
+
+// Lines that are longer, broken at blanks, what follows two blanks in; tables as they are.
+std::string Wrapped(const std::string& text, size_t columns);
 
 }  // namespace scancal

@@ -17,6 +17,7 @@ struct ComparisonColumn {
   std::string name;      // with its unit: "M/mm"
   int digits = 3;        // significant ones where there is no u; 0: a whole number
   bool is_time = false;  // of computing: not the same twice
+  bool detail = false;   // shown where there is room
 };
 
 struct ComparisonCell {

@@ -471,11 +471,15 @@ void JudgeCheck(const ScreenedFit& fitted, Calibration* result) {
     return;
   }
   const double before = SizeOfErrors(check.before).mean, after = SizeOfErrors(check.after).mean;
-  if (after > before) result->unreliable.push_back(Say(kWorseThanNominal, after, before));
-  if (!(result->noise_dof >= 1) || data.check.empty()) return;
-  const Eigen::MatrixXd covariance = CovarianceOfCheck(fitted, *result);
   const auto errors = Eigen::VectorXd::Map(check.after.data(), std::ssize(check.after));
   const double n = static_cast<double>(check.after.size());
+  constexpr double kWorse = 0.01;
+  // By more than chance: a robot whose nominal links are good already becomes worse in every second calibration.
+  const double nominal = Eigen::VectorXd::Map(check.before.data(), std::ssize(check.before)).squaredNorm();
+  if (after > before && FUpperTail(errors.squaredNorm() / nominal, n, n) < kWorse)
+    result->unreliable.push_back(Say(kWorseThanNominal, after, before));
+  if (!(result->noise_dof >= 1) || data.check.empty()) return;
+  const Eigen::MatrixXd covariance = CovarianceOfCheck(fitted, *result);
   const double F = Cholesky(covariance).SolveLower(errors).squaredNorm() / n, mean = errors.mean(),
                u_mean = std::sqrt(covariance.sum()) / n, p = 2 * FUpperTail(F, n, result->noise_dof),
                p_mean = 2 * FUpperTail(std::pow(mean / u_mean, 2), 1, result->noise_dof);

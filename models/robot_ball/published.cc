@@ -225,7 +225,7 @@ Result<Comparison> Scanner::Compare(const CompareChoice&) const {
   Comparison comparison;
   if (!data.check.empty()) comparison.columns = {{"max/mm"}, {"mean/mm"}};
   for (size_t k = 0; k < data.check.size() && k < kMostPositions; ++k)
-    comparison.columns.push_back({std::to_string(k + 1), 2});
+    comparison.columns.push_back({std::to_string(k + 1), 2, false, true});
   comparison.columns.push_back({"rms of balls/mm"});
   comparison.columns.push_back({"s", 2, true});
   const std::vector<Method> methods = {{Say(kNominalRobot), [&] { return VirtualPointHandEye(data); }},

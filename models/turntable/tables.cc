@@ -173,6 +173,7 @@ NumberTable TimeTable(const FittedPlacement& fitted, const std::vector<Mean>& me
   std::vector<size_t> order(profiles.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::ranges::stable_sort(order, {}, [&](size_t k) { return profiles[k].time; });
+  if (profiles[order.front()].time == profiles[order.back()].time) return {};  // not known
   const auto alpha = [&](size_t k) { return profiles[k].alpha; };
   if (std::ranges::is_sorted(order, {}, alpha) || std::ranges::is_sorted(order, std::greater(), alpha)) return {};
   NumberTable table = TableOf({{"time", Unit::kOne}, {"alpha", Unit::kRad}, {"residual", Unit::kMm}, {"u", Unit::kMm}});

@@ -40,7 +40,7 @@ class CompareTest : public CliTest {
 };
 
 TEST_F(CompareTest, RowsInTheirOrder) {
-  const Outcome outcome = RunScancal({"compare", SmallSearch().string(), kFine});
+  const Outcome outcome = RunScancal({"compare", SmallSearch().string(), kFine, "--wide"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   const std::vector<std::string> rows = Rows(outcome.out);
@@ -66,7 +66,7 @@ TEST_F(CompareTest, RowsInTheirOrder) {
 }
 
 TEST_F(CompareTest, AFinerGridComesNearerToTheJointFit) {
-  const Outcome outcome = RunScancal({"compare", SmallSearch().string(), kFine});
+  const Outcome outcome = RunScancal({"compare", SmallSearch().string(), kFine, "--wide"});
   const std::vector<std::string> rows = Rows(outcome.out);
   ASSERT_EQ(rows.size(), 10U);
   const auto depth = Numbers(rows[7], "joint, depth"), plane = Numbers(rows[6], "joint, point to plane"),

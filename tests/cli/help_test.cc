@@ -59,16 +59,16 @@ TEST(HelpTest, VersionIsOneLine) {
 
 TEST(HelpTest, EachCommandShowsItsOwnFlagsOnly) {
   EXPECT_THAT(HelpFlags("refine"),
-              ElementsAre("out", "report", "language", "residual", "weights", "max_iterations", "montecarlo", "sign",
-                          "batch", "threads", "resume", "accept_unreliable"));
+              ElementsAre("out", "report", "language", "residual", "weights", "max_iterations", "montecarlo", "wide",
+                          "sign", "batch", "threads", "resume", "accept_unreliable"));
   EXPECT_THAT(HelpFlags("montecarlo"), ElementsAre("out", "report", "language", "trials", "seed", "digits", "threads",
-                                                   "sign", "accept_unreliable"));
+                                                   "wide", "sign", "accept_unreliable"));
   EXPECT_THAT(HelpFlags("report"), ElementsAre("out", "pdf", "dcc", "figures", "previous", "language", "key"));
   EXPECT_THAT(HelpFlags("recheck"), ElementsAre("key", "sign"));
   EXPECT_THAT(HelpFlags("verify"), ElementsAre("at", "out", "unreliable", "key"));
   EXPECT_THAT(HelpFlags("diff"), ElementsAre("format", "unreliable", "key"));
   EXPECT_THAT(HelpFlags("history"), ElementsAre("format", "out", "language", "unreliable", "key"));
-  EXPECT_THAT(HelpFlags("compare"), ElementsAre("steps", "surface"));
+  EXPECT_THAT(HelpFlags("compare"), ElementsAre("steps", "surface", "wide"));
   EXPECT_THAT(HelpFlags("convert"), ElementsAre("as"));
   EXPECT_THAT(HelpFlags("planes"), ElementsAre("out"));
   EXPECT_THAT(HelpFlags("selftest"), ElementsAre("nist"));

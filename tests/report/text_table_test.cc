@@ -118,6 +118,13 @@ TEST(TextTableTest, CharactersCountNotBytes) {
             "plain   10.25         -\n");
 }
 
+TEST(WrappedTest, SentencesBreakAtBlanksTablesNever) {
+  EXPECT_EQ(Wrapped("warning: µ one two three\n", 12), "warning: µ\n  one two\n  three\n");
+  EXPECT_EQ(Wrapped("averyveryverylongword at last\n", 8), "averyveryverylongword\n  at\n  last\n");
+  const std::string as_it_is = "short\n\na  1234567890123\n----------------\n";
+  EXPECT_EQ(Wrapped(as_it_is, 8), as_it_is);
+}
+
 TEST(TextTableTest, AHeaderAlone) { EXPECT_EQ(TextTable({"a", "bc"}).Text(), "a  bc\n-----\n"); }
 
 }  // namespace

@@ -10,6 +10,7 @@ using ::testing::AllOf;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 TEST(TextTest, TheMonteCarloStandsBesideValueAndU) {
   Calibration c = SomeCalibration();
@@ -36,6 +37,25 @@ TEST(TextTest, TheReportNamesEverythingThatMatters) {
   EXPECT_THAT(text, AllOf(HasSubstr("not a traceable uncertainty"), HasSubstr("\nstatus: ok\n")));
   EXPECT_THAT(text, Not(HasSubstr("tilt_y")));  // held at 0: nothing to tell
   EXPECT_THAT(text, Not(HasSubstr("nan")));
+}
+
+TEST(TextTest, OfManyQuantitiesASummary) {
+  Calibration c = WithBudgetAndVolume();
+  const Parameter M = *c.Find("M"), N = *c.Find("N");
+  c.jackknife = {{M.value, N.value + N.u}};
+  for (const char* name : {"a", "b", "c"}) {
+    c.parameters.push_back(M);
+    c.parameters.back().name = name;
+    c.estimated.push_back(name);
+    for (BudgetLine& line : c.budget) line.share.push_back(0.25), line.contribution.push_back(0.001);
+    c.jackknife[0].push_back(M.value);
+  }
+  c.jackknife[0].back() = M.value - 2.5 * M.u;
+  const std::string text = ToText(c, false), wide = ToText(c);
+  EXPECT_THAT(text, StartsWith("status: ok\n"));
+  EXPECT_THAT(text, AllOf(HasSubstr("without target left c moves most: by -2.50 u\n"), HasSubstr("--wide"),
+                          Not(HasSubstr("u naive")), Not(HasSubstr("moves by, without"))));
+  EXPECT_THAT(wide, AllOf(HasSubstr("u naive"), HasSubstr("moves by, without"), Not(HasSubstr("--wide"))));
 }
 
 TEST(TextTest, OneLineSumsUpTheVolume) {

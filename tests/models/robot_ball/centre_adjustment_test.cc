@@ -17,7 +17,7 @@ struct SeenArtifact {
 };
 
 // Balls of the artifact seen from somewhere with noise; spread: whether it differs by ball and direction.
-SeenArtifact Seen(int balls, double noise, bool spread, uint64_t seed) {
+SeenArtifact SeenFrom(int balls, double noise, bool spread, uint64_t seed) {
   SeenArtifact scene{Matrix3Xd(3, balls), Matrix3Xd(3, balls), {}};
   const std::vector<Model::Sphere> spheres = PublishedArtifact();
   Random random(seed, 0);
@@ -65,7 +65,7 @@ double Largest(const Matrix3Xd& difference) { return difference.colwise().norm()
 
 TEST(AdjustByDistances, ConvergesToTheRigidFit) {
   for (const int balls : {3, 4, 5, 8}) {
-    const SeenArtifact scene = Seen(balls, 0.035, false, 7);
+    const SeenArtifact scene = SeenFrom(balls, 0.035, false, 7);
     const CentreAdjustment adjusted = AdjustByDistances(scene.measured, scene.on_artifact, scene.spreads);
     EXPECT_TRUE(adjusted.converged) << balls;
     Matrix3Xd rigid = Carried(MotionOnto(scene.on_artifact, scene.measured), scene.on_artifact);
@@ -75,7 +75,7 @@ TEST(AdjustByDistances, ConvergesToTheRigidFit) {
 }
 
 TEST(AdjustByDistances, OneStepIsNotEnough) {
-  const SeenArtifact scene = Seen(8, 0.035, false, 7);
+  const SeenArtifact scene = SeenFrom(8, 0.035, false, 7);
   const CentreAdjustment one = AdjustByDistances(scene.measured, scene.on_artifact, scene.spreads, 1);
   EXPECT_FALSE(one.converged);
   const double off = Largest(one.centres - RigidFit(scene));
@@ -85,7 +85,7 @@ TEST(AdjustByDistances, OneStepIsNotEnough) {
 
 TEST(AdjustByDistances, WeighsBallsAndDirections) {
   for (const int balls : {3, 4, 8}) {
-    const SeenArtifact scene = Seen(balls, 0.035, true, 11);
+    const SeenArtifact scene = SeenFrom(balls, 0.035, true, 11);
     const CentreAdjustment adjusted = AdjustByDistances(scene.measured, scene.on_artifact, scene.spreads);
     EXPECT_TRUE(adjusted.converged) << balls;
     EXPECT_LT(Largest(adjusted.centres - RigidFit(scene)), 1e-11) << balls;
@@ -96,7 +96,7 @@ TEST(AdjustByDistances, WeighsBallsAndDirections) {
 }
 
 TEST(AdjustByDistances, TwoBallsShareTheError) {
-  SeenArtifact scene = Seen(2, 0, false, 1);
+  SeenArtifact scene = SeenFrom(2, 0, false, 1);
   const Vector3d along = (scene.measured.col(0) - scene.measured.col(1)).normalized();
   const Matrix3Xd exact = scene.measured;
   scene.measured.col(0) += 0.1 * along;
@@ -107,13 +107,13 @@ TEST(AdjustByDistances, TwoBallsShareTheError) {
 }
 
 TEST(AdjustByAngles, ChangesNothingAfterTheDistances) {
-  const SeenArtifact scene = Seen(8, 0.035, true, 3);
+  const SeenArtifact scene = SeenFrom(8, 0.035, true, 3);
   const Matrix3Xd adjusted = AdjustByDistances(scene.measured, scene.on_artifact, scene.spreads).centres;
   EXPECT_LT(Largest(AdjustByAngles(adjusted, scene.on_artifact) - adjusted), 1e-11);
 }
 
 TEST(AdjustByAngles, RemovesErrorsOfAngles) {
-  const SeenArtifact scene = Seen(8, 0.035, false, 3);
+  const SeenArtifact scene = SeenFrom(8, 0.035, false, 3);
   const auto angle = [](const Matrix3Xd& at, int i, int j, int k) {
     const Vector3d a = at.col(j) - at.col(i), b = at.col(k) - at.col(i);
     return std::atan2(a.cross(b).norm(), a.dot(b));

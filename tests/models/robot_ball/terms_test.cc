@@ -1,4 +1,5 @@
 // What a data set may say of terms, motors and temperature.
+#include "io/json_file.h"
 #include "models/robot_ball/scanner.h"
 #include "tests/models/robot_ball/files.h"
 

@@ -9,7 +9,7 @@ using ::testing::HasSubstr;
 
 class Kept final : public PointCloudWriter {
  public:
-  Result<void> Write(std::span<const std::array<double, 3>> points_mm, int) override {
+  Result<void> Write(std::span<const std::array<double, 3>> points_mm, int, std::span<const double>) override {
     for (const auto& p : points_mm) points.emplace_back(p[0], p[1], p[2]);
     return {};
   }

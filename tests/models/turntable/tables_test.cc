@@ -139,7 +139,8 @@ TEST(TurntableFigures, ASweepThatTurnsBackIsShownInTime) {
   ASSERT_EQ(in_time.size(), 40U);
   for (size_t row = 0; row < 40; ++row) {
     const std::vector<double>& at = sweep[row < 20 ? 2 * row : 2 * (39 - row) + 1];
-    EXPECT_EQ(in_time[row], (std::vector{static_cast<double>(row), at[0], at[1], at[2]}));
+    EXPECT_EQ(in_time[row][0], static_cast<double>(row));
+    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(in_time[row][k + 1], at[k], 1e-12);
   }
 }
 

@@ -49,7 +49,7 @@ def calibration(scene: str) -> Path:
     elif scene == "bad":
         _simulated(out, "--placements=1", "--tilt_x=1", "--sweep=4", "--profiles=12", "--points=9", allowed=2)
     elif scene == "many_targets":
-        _simulated(out, "--placements=40", "--profiles=16", "--points=16", influences="{scale_y: 1e-3}")
+        _simulated(out, "--placements=40", "--profiles=16", "--points=16", "--back", influences="{scale_y: 1e-3}")
     elif scene == "many_stations":
         _simulated(out, "--model=robot-ball", "--declare", "--stations=60", "--poses=5")
     elif scene == "flange":

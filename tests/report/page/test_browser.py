@@ -19,7 +19,7 @@ OF_ALL = ["budget", "scene", "scene_3d"]
 OF_SCANS = ["comparison", "residual_map", "residual_sweep", "residual_line", "residual_histogram", "surface_contour"]
 OF_ROBOTS = ["correlation", "links", "robot_residuals", "joints", "workspace", "lengths"]  # two numbers need no matrix
 FIGURES = {"sample": OF_ALL + OF_SCANS + ["leave_one_out", "monte_carlo"], "bad": OF_ALL + OF_SCANS,
-           "many_targets": OF_ALL + OF_SCANS + ["leave_one_out", "volume"],
+           "many_targets": OF_ALL + OF_SCANS + ["residual_time", "correlation", "leave_one_out", "volume"],
            "robot": OF_ALL + OF_ROBOTS + ["robot_residual_map", "leave_one_out", "comparison"],
            "many_stations": OF_ALL + OF_ROBOTS + ["robot_residual_map", "comparison"],
            "flange": OF_ALL + OF_ROBOTS + ["comparison"]}
