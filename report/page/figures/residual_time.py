@@ -18,9 +18,10 @@ def draw(c: Calibration, t) -> style.Figure | None:
     factor, unit = length_unit(max(np.nanmax(np.abs(table["residual"]), initial=0) for table in tables))
     columns = panel_columns(len(targets))
     rows = math.ceil(len(targets) / columns)
-    figure = style.pyplot.figure(figsize=(style.WIDTH, 1.3 * rows + 0.5))
-    grid = figure.subplots(rows, columns, squeeze=False, sharey=True)
-    for k, (axes, target, table) in enumerate(zip(grid.flat, targets, tables)):
+    figure = style.pyplot.figure(figsize=(style.WIDTH, 1.3 * rows + 0.75))
+    above, panels = figure.subfigures(2, 1, height_ratios=[0.25, 1.3 * rows + 0.5])
+    grid = panels.subplots(rows, columns, squeeze=False, sharey=True)
+    for axes, target, table in zip(grid.flat, targets, tables):
         mean, u = factor * table["residual"], factor * table["u"] * correlation_factor(target)
         axes.fill_between(table["time"], mean - 2 * u, mean + 2 * u, color=style.TERTIARY, linewidth=0)
         axes.plot(table["time"], mean, color=style.MUTED, linewidth=0.5, linestyle="-")
@@ -32,10 +33,9 @@ def draw(c: Calibration, t) -> style.Figure | None:
         axes.set_title(shortened(target["name"], 20), fontsize=8)
         axes.margins(x=0.02)
         axes.locator_params(nbins=5)
-        if k == 0:
-            axes.legend(fontsize=7, loc="best", markerscale=2)
     for axes in grid.flat[len(targets):]:
         axes.set_axis_off()
-    figure.supxlabel(t("figure.residual_time.time"), fontsize=9)
-    figure.supylabel(t("figure.residual_time.mean", unit=unit), fontsize=9)
+    above.legend(*grid.flat[0].get_legend_handles_labels(), loc="center", ncol=2, fontsize=8, markerscale=2)
+    panels.supxlabel(t("figure.residual_time.time"), fontsize=9)
+    panels.supylabel(t("figure.residual_time.mean", unit=unit), fontsize=9)
     return figure
