@@ -202,50 +202,66 @@ Result<std::unique_ptr<ScanReader>> OpenScan(const ScanDeclaration& scan, const 
   return reader;
 }
 
+// What is kept of a scan, batch by batch; at its end the planes of another scan are refused.
+class KeptBatches {
+ public:
+  KeptBatches(const ScanDeclaration& scan, const Senses& senses, ScanReader* reader)
+      : scan_(scan), senses_(senses), reader_(reader) {}
+  Result<bool> Next() {
+    SCANCAL_ASSIGN_OR_RETURN(const bool more, reader_->Next(&batch));
+    if (!more) {
+      if (scan_.plane) SCANCAL_RETURN_IF_ERROR(CheckSameScan(scan_, checksum_));
+      return false;
+    }
+    ToSensor(senses_, batch, &points);
+    SCANCAL_ASSIGN_OR_RETURN(kept, Kept(scan_, batch, points));
+    if (scan_.plane) {
+      KeepPlane(*scan_.plane, checksum_.points(), &run_, &kept);
+      checksum_.Add(batch);
+    }
+    return true;
+  }
+
+  ScanBatch batch;
+  SensorColumns points;
+  std::vector<char> kept;  // of each point whether
+
+ private:
+  const ScanDeclaration& scan_;
+  const Senses& senses_;
+  ScanReader* reader_;
+  PointsChecksum checksum_;
+  size_t run_ = 0;
+};
+
 }  // namespace
 
 Result<SensorColumns> ReadKept(const ScanDeclaration& scan, const Senses& senses) {
   SCANCAL_ASSIGN_OR_RETURN(const auto reader, OpenScan(scan, senses));
-  ScanBatch batch;
-  SensorColumns points, all;
-  PointsChecksum checksum;
-  size_t run = 0;
+  KeptBatches batches(scan, senses, reader.get());
+  SensorColumns all;
   for (;;) {
-    SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
-    if (!more) break;
-    ToSensor(senses, batch, &points);
-    SCANCAL_ASSIGN_OR_RETURN(std::vector<char> kept, Kept(scan, batch, points));
-    if (scan.plane) {
-      KeepPlane(*scan.plane, checksum.points(), &run, &kept);
-      checksum.Add(batch);
-    }
+    SCANCAL_ASSIGN_OR_RETURN(const bool more, batches.Next());
+    if (!more) return all;
     for (const auto column : {&SensorColumns::alpha, &SensorColumns::y, &SensorColumns::z, &SensorColumns::range})
-      for (size_t i = 0; i < (points.*column).size(); ++i)
-        if (kept[i]) (all.*column).push_back((points.*column)[i]);
+      for (size_t i = 0; i < (batches.points.*column).size(); ++i)
+        if (batches.kept[i]) (all.*column).push_back((batches.points.*column)[i]);
   }
-  if (scan.plane) SCANCAL_RETURN_IF_ERROR(CheckSameScan(scan, checksum));
-  return all;
 }
 
 Result<RawScan> ReadScan(const ScanDeclaration& scan, const Senses& senses,
                          const std::function<void(double)>& progress) {
   SCANCAL_ASSIGN_OR_RETURN(const auto reader, OpenScan(scan, senses));
   Gatherer gatherer(scan.format.path);
-  ScanBatch batch;
-  SensorColumns points;
-  PointsChecksum checksum;
-  size_t run = 0;
+  KeptBatches batches(scan, senses, reader.get());
+  const ScanBatch& batch = batches.batch;
+  const SensorColumns& points = batches.points;
+  const std::vector<char>& kept = batches.kept;
   RawScan result;
   result.name = scan.name;
   for (;;) {
-    SCANCAL_ASSIGN_OR_RETURN(const bool more, reader->Next(&batch));
+    SCANCAL_ASSIGN_OR_RETURN(const bool more, batches.Next());
     if (!more) break;
-    ToSensor(senses, batch, &points);
-    SCANCAL_ASSIGN_OR_RETURN(std::vector<char> kept, Kept(scan, batch, points));
-    if (scan.plane) {
-      KeepPlane(*scan.plane, checksum.points(), &run, &kept);
-      checksum.Add(batch);
-    }
     const int profile = batch.Find("profile"), time = batch.Find("time"), temperature = batch.Find("temperature");
     result.timed |= time >= 0;
     const double* const keys = profile >= 0 ? batch.columns[profile].data() : nullptr;
@@ -271,7 +287,6 @@ Result<RawScan> ReadScan(const ScanDeclaration& scan, const Senses& senses,
     progress(static_cast<double>(reader->bytes_read()) /
              static_cast<double>(std::max<int64_t>(1, reader->bytes_total())));
   }
-  if (scan.plane) SCANCAL_RETURN_IF_ERROR(CheckSameScan(scan, checksum));
   if (gatherer.points() == 0)
     return Error{scan.format.path.string() + ": target " + scan.name + ": no point is left; widen its keep: intervals"};
   result.missing = static_cast<double>(reader->missing());
